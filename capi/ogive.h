@@ -76,6 +76,8 @@ OGIVE_API ogive_status ogive_world_create(ogive_world** world);
 OGIVE_API void ogive_world_destroy(ogive_world* world);
 /* Message of the last call on this world that failed, "" if none. Valid until the next call on the world. */
 OGIVE_API const char* ogive_world_message(const ogive_world* world);
+/* Sets the message of the world (NULL: "") and returns status; for companion libraries and hosts. */
+OGIVE_API ogive_status ogive_world_report(ogive_world* world, ogive_status status, const char* message);
 
 /* Boundary of a domain face. */
 enum {
