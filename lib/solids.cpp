@@ -40,7 +40,11 @@ std::string number(double value) {
   return text;
 }
 
-std::string vector(const Vector& v) { return "(" + number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]) + ")"; }
+std::string vector(const Vector& v) {
+  char text[100];
+  std::snprintf(text, sizeof text, "(%.12g, %.12g, %.12g)", v[0], v[1], v[2]);
+  return text;
+}
 
 [[noreturn]] void refuse(const std::string& field, const std::string& expectation, const std::string& value) {
   throw Error(ErrorKind::Argument, "solid." + field + ": must " + expectation + ", got " + value);
