@@ -1,0 +1,229 @@
+// From a scene to a prepared world, through the C interface alone.
+#include "build.hpp"
+
+#include <algorithm>
+
+#include "filled_mesh.hpp"
+#include "particle_csv.hpp"
+
+namespace driver {
+namespace {
+
+/// A value that the scene gives replaces the engine's default.
+template <typename Field, typename Value>
+void assign(Field& field, const std::optional<Value>& value) {
+  if (value) field = static_cast<Field>(*value);
+}
+
+void assign(double (&field)[3], const Vector3& value) { std::copy(value.begin(), value.end(), field); }
+
+class Builder {
+ public:
+  explicit Builder(const Scene& scene) : scene_(scene), world_(make_world()) {}
+
+  BuiltWorld build() {
+    set_grid();
+    set_numerics();
+    for (const MaterialScene& material : scene_.materials) add_material(material);
+    for (const BodyScene& body : scene_.bodies) add_body(body);
+    set_contact();
+    for (size_t i = 0; i < scene_.clamps.size(); ++i) add_clamp(i);
+    set_stop();
+    prepare();
+    return {std::move(world_), std::move(notes_)};
+  }
+
+ private:
+  /// Whatever the engine refuses now is the scene's fault, except want of memory and defects.
+  void require(ogive_status status, const std::string& path) const {
+    if (status == OGIVE_OK) return;
+    std::string message = ogive_world_message(world_.get());
+    if (message.empty()) message = ogive_status_name(status);
+    const bool user_can_mend = status != OGIVE_ERROR_MEMORY && status != OGIVE_ERROR_INTERNAL;
+    throw Failure(user_can_mend ? kExitInput : kExitInternal, scene_.place(path) + ": " + message);
+  }
+
+  ogive_body_id body_id(const std::optional<std::string>& name) const {
+    for (size_t i = 0; name && i < scene_.bodies.size(); ++i) {
+      if (scene_.bodies[i].name == *name) return body_ids_[i];
+    }
+    return {-1};
+  }
+
+  void set_grid() {
+    ogive_grid_def def;
+    ogive_grid_def_init(&def, sizeof def);
+    def.cell_size = scene_.grid.cell_size;
+    assign(def.domain_min, scene_.grid.lower);
+    assign(def.domain_max, scene_.grid.upper);
+    std::copy(scene_.grid.faces.begin(), scene_.grid.faces.end(), def.face);
+    require(ogive_world_set_grid(world_.get(), &def), "grid");
+  }
+
+  void set_numerics() {
+    ogive_numerics_def def;
+    ogive_numerics_def_init(&def, sizeof def);
+    assign(def.shape_function, scene_.numerics.shape_function);
+    assign(def.time_step_factor, scene_.numerics.time_step_factor);
+    assign(def.maximum_time_step, scene_.numerics.maximum_time_step);
+    assign(def.threads, scene_.numerics.threads);
+    assign(def.gravity, scene_.numerics.gravity);
+    require(ogive_world_set_numerics(world_.get(), &def), "numerics");
+  }
+
+  void add_material(const MaterialScene& material) {
+    ogive_material_def def;
+    ogive_material_def_init(&def, sizeof def);
+    def.density = material.density;
+    def.strength = material.strength;
+    def.eos = material.equation_of_state;
+    def.failure = material.failure_strain ? OGIVE_FAILURE_PLASTIC_STRAIN : OGIVE_FAILURE_NONE;
+    assign(def.youngs_modulus, material.youngs_modulus);
+    assign(def.poisson_ratio, material.poisson_ratio);
+    assign(def.bulk_modulus, material.bulk_modulus);
+    assign(def.shear_modulus, material.shear_modulus);
+    assign(def.yield_stress, material.yield_stress);
+    assign(def.hardening_modulus, material.hardening_modulus);
+    assign(def.hardening_exponent, material.hardening_exponent);
+    assign(def.rate_coefficient, material.rate_coefficient);
+    assign(def.reference_strain_rate, material.reference_strain_rate);
+    assign(def.thermal_exponent, material.thermal_exponent);
+    assign(def.melt_temperature, material.melt_temperature);
+    assign(def.room_temperature, material.room_temperature);
+    assign(def.specific_heat, material.specific_heat);
+    assign(def.taylor_quinney, material.taylor_quinney);
+    assign(def.eos_sound_speed, material.eos_sound_speed);
+    assign(def.eos_slope, material.eos_slope);
+    assign(def.gruneisen, material.gruneisen);
+    assign(def.failure_strain, material.failure_strain);
+    assign(def.viscosity_linear, material.viscosity_linear);
+    assign(def.viscosity_quadratic, material.viscosity_quadratic);
+    ogive_material_id id{-1};
+    require(ogive_material_add(world_.get(), material.name.c_str(), &def, &id), "materials." + material.name);
+    material_ids_.push_back(id);
+  }
+
+  void add_body(const BodyScene& body) {
+    const std::string path = "bodies." + body.name;
+    ogive_body_def def;
+    ogive_body_def_init(&def, sizeof def);
+    for (size_t i = 0; i < scene_.materials.size(); ++i) {
+      if (scene_.materials[i].name == body.material) def.material = material_ids_[i];
+    }
+    assign(def.velocity, body.velocity);
+    assign(def.angular_velocity, body.angular_velocity);
+    assign(def.angular_centre, body.angular_centre);
+    ogive_body_id id{-1};
+    if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
+      ogive_solid_def shape;
+      ogive_solid_def_init(&shape, sizeof shape);
+      shape.solid = solid->solid;
+      shape.lattice = solid->lattice;
+      assign(shape.size, solid->size);
+      assign(shape.centre, solid->centre);
+      assign(shape.axis, solid->axis);
+      assign(shape.reference, solid->reference);
+      assign(shape.spacing, solid->spacing);
+      require(ogive_body_add_solid(world_.get(), body.name.c_str(), &def, &shape, &id), path);
+    } else {
+      const ParticleList particles = particles_of(body, path);
+      require(ogive_body_add_particles(world_.get(), body.name.c_str(), &def,
+                                       static_cast<int64_t>(particles.volumes.size()), particles.positions.data(),
+                                       particles.volumes.data(), &id),
+              path);
+    }
+    body_ids_.push_back(id);
+  }
+
+  ParticleList particles_of(const BodyScene& body, const std::string& path) {
+    if (const auto* file = std::get_if<ParticleFileShape>(&body.shape)) {
+      return read_particle_csv(file->file, scene_.place(path + ".particles"));
+    }
+    FilledMesh filled = fill_mesh(std::get<MeshShape>(body.shape), scene_.place(path + ".mesh"));
+    if (filled.repaired) notes_.push_back("mesh of body " + body.name + ":\n" + filled.report);
+    return std::move(filled.particles);
+  }
+
+  ogive_contact_def contact_def(const ContactScene& contact) const {
+    ogive_contact_def def;
+    ogive_contact_def_init(&def, sizeof def);
+    assign(def.method, contact.method);
+    assign(def.normal, contact.normal);
+    def.master = body_id(contact.master);
+    assign(def.friction, contact.friction);
+    assign(def.detection, contact.detection);
+    assign(def.gap_offset, contact.gap_offset);
+    return def;
+  }
+
+  void set_contact() {
+    const ogive_contact_def def = contact_def(scene_.contact);
+    require(ogive_world_set_contact(world_.get(), &def), "contact");
+    for (size_t i = 0; i < scene_.contact_pairs.size(); ++i) {
+      const ContactPairScene& pair = scene_.contact_pairs[i];
+      ogive_contact_def pair_def = contact_def(pair.rule);
+      // Without a name, the first of the two in the scene, as for all pairs.
+      if (pair_def.master.index < 0) {
+        pair_def.master.index = std::min(body_id(pair.bodies[0]).index, body_id(pair.bodies[1]).index);
+      }
+      require(ogive_contact_set_pair(world_.get(), body_id(pair.bodies[0]), body_id(pair.bodies[1]), &pair_def),
+              child_path("contact.pairs", i));
+    }
+  }
+
+  void add_clamp(size_t index) {
+    const ClampScene& clamp = scene_.clamps[index];
+    ogive_clamp_def def;
+    ogive_clamp_def_init(&def, sizeof def);
+    def.region = clamp.region;
+    assign(def.a, clamp.a);
+    assign(def.b, clamp.b);
+    def.radius = clamp.radius;
+    def.body = body_id(clamp.body);
+    def.axes = clamp.axes;
+    require(ogive_clamp_add(world_.get(), &def), child_path("clamps", index));
+  }
+
+  void set_stop() {
+    const StopScene& stop = scene_.stop;
+    if (!stop.body) return;
+    ogive_stop_def def;
+    ogive_stop_def_init(&def, sizeof def);
+    def.body = body_id(stop.body);
+    assign(def.settle_window, stop.settle_window);
+    assign(def.settle_tolerance, stop.settle_tolerance);
+    assign(def.stop_when_stopped, stop.stop_when_stopped);
+    assign(def.stop_when_out, stop.stop_when_out);
+    require(ogive_world_set_stop(world_.get(), &def), "stop");
+  }
+
+  void prepare() {
+    const ogive_status status = ogive_world_prepare(world_.get());
+    if (status == OGIVE_OK) return;
+    // The message names the bodies that it is about, the last one being the one that was added against the others.
+    const std::string message = ogive_world_message(world_.get());
+    std::string path;
+    size_t latest = 0;
+    for (const BodyScene& body : scene_.bodies) {
+      for (const char quote : {'"', '\''}) {
+        const size_t at = message.rfind(quote + body.name + quote);
+        if (at == std::string::npos || (!path.empty() && at < latest)) continue;
+        path = "bodies." + body.name;
+        latest = at;
+      }
+    }
+    require(status, path.empty() ? "bodies" : path);
+  }
+
+  const Scene& scene_;
+  World world_;
+  std::vector<ogive_material_id> material_ids_;
+  std::vector<ogive_body_id> body_ids_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+BuiltWorld build_world(const Scene& scene) { return Builder(scene).build(); }
+
+}  // namespace driver

@@ -1,0 +1,21 @@
+// Particles from a surface mesh, through the C interface of the geometry library.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "particle_csv.hpp"
+#include "scene.hpp"
+
+namespace driver {
+
+struct FilledMesh {
+  ParticleList particles;
+  std::string report;  // what was read and found, in lines
+  bool repaired = false;
+};
+
+/// `place` begins every message. Throws Failure(kExitInput) for whatever is wrong with the mesh.
+FilledMesh fill_mesh(const MeshShape& shape, const std::string& place);
+
+}  // namespace driver

@@ -1,0 +1,265 @@
+// ogive run and ogive restart: a world is stepped to its end, with output, checkpoints and signals on the way.
+#include "run.hpp"
+
+#include <signal.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <thread>
+
+#include "build.hpp"
+#include "checkpointing.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "scene.hpp"
+#include "text.hpp"
+#include "world.hpp"
+
+namespace driver {
+namespace {
+
+volatile sig_atomic_t signal_received = 0;
+
+void remember_signal(int number) { signal_received = number; }
+
+/// From now on these signals only ask for an end after the step. Those that the caller ignores (nohup) stay ignored.
+void catch_signals() {
+  signal(SIGPIPE, SIG_IGN);  // a run outlives whoever read its progress
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction current {};
+    sigaction(number, nullptr, &current);
+    if (current.sa_handler == SIG_IGN) continue;
+    struct sigaction action {};
+    action.sa_handler = remember_signal;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;
+    sigaction(number, &action, nullptr);
+  }
+}
+
+void set_option(Document& document, const std::string& key, const std::string& value, const std::string& option) {
+  document.set(key, value, option + ' ' + value);
+}
+
+/// Threads that the engine uses for the scene's number, of which 0 stands for all processors of this process.
+int32_t threads_in_use(const NumericsScene& numerics) {
+  const int32_t wanted = numerics.threads.value_or(1);
+  return wanted > 0 ? wanted : static_cast<int32_t>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+const char* stop_name(int32_t stop) {
+  switch (stop) {
+    case OGIVE_STOP_SETTLED:
+      return "settled";
+    case OGIVE_STOP_STOPPED:
+      return "stopped";
+    case OGIVE_STOP_OUT:
+      return "out";
+    default:
+      return "";
+  }
+}
+
+/// One run from a prepared world to its end.
+class Simulation {
+ public:
+  Simulation(const Scene& scene, World world, const std::filesystem::path& directory, DriverState state)
+      : scene_(scene),
+        world_(std::move(world)),
+        directory_(directory),
+        state_(std::move(state)),
+        output_(scene_, directory_, state_),
+        wall_seconds_before_(state_.wall_seconds),
+        start_(progress_of(world_.get())),
+        display_(scene_.units, start_.time, scene_.stop.time, start_.particle_steps) {}
+
+  ExitCode run_from_start() {
+    for (int32_t i = 0; i < ogive_body_count(world_.get()); ++i) {
+      const ogive_body_result body = body_result_of(world_.get(), i);
+      state_.initial_velocity[ogive_body_name(world_.get(), ogive_body_id{i})] = {body.velocity[0], body.velocity[1],
+                                                                                  body.velocity[2]};
+    }
+    return run_into_new_directory();
+  }
+  ExitCode run_into_new_directory() {
+    output_.start(world_.get(), start_);
+    return run();
+  }
+  ExitCode run_on_in_directory() {
+    output_.resume();
+    rewind_directory(directory_, state_);
+    return run();
+  }
+
+ private:
+  ExitCode run() {
+    const int64_t steps_left = scene_.stop.max_steps == 0 ? 0 : scene_.stop.max_steps - start_.steps;
+    ogive_status status = OGIVE_OK;
+    if (start_.time < scene_.stop.time && steps_left >= 0 && !(scene_.stop.max_steps > 0 && steps_left == 0)) {
+      status = ogive_world_advance(world_.get(), scene_.stop.time, steps_left, &Simulation::after_step, this);
+    }
+    display_.end_line();
+    if (problem_) std::rethrow_exception(problem_);
+    if (status == OGIVE_ERROR_NUMERICAL) save_failed_state();
+    require_ok(status, world_.get());
+
+    const std::string reason = stop_reason(progress_of(world_.get()));
+    return reason.empty() ? interrupt() : finish(reason);
+  }
+
+  static int32_t after_step(ogive_world* world, void* self) {
+    return static_cast<Simulation*>(self)->after_step(world);
+  }
+
+  /// No exception may pass through the engine: it waits here until the engine has returned.
+  int32_t after_step(ogive_world* world) try {
+    const ogive_progress progress = progress_of(world);
+    output_.write_due(world, progress);
+    const int64_t every = scene_.output.checkpoint_steps;
+    if (every > 0 && progress.steps % every == 0) save_checkpoint(progress);
+    display_.update(world, progress);
+    return signal_received != 0;
+  } catch (...) {
+    problem_ = std::current_exception();
+    return 1;
+  }
+
+  double wall_seconds() const { return wall_seconds_before_ + display_.seconds(); }
+
+  std::filesystem::path save_checkpoint(const ogive_progress& progress) {
+    const std::filesystem::path file = directory_ / checkpoint_name(progress.steps);
+    output_.flush_to_disk();
+    state_.wall_seconds = wall_seconds();
+    write_checkpoint(world_.get(), file, scene_.text, state_);
+    remove_old_checkpoints(directory_, progress.steps, scene_.output.checkpoint_keep);
+    return file;
+  }
+
+  /// Why the run is over, "" if it was interrupted.
+  std::string stop_reason(const ogive_progress& progress) const {
+    if (progress.stop != OGIVE_STOP_NONE) return stop_name(progress.stop);
+    if (progress.time >= scene_.stop.time) return "time";
+    if (scene_.stop.max_steps > 0 && progress.steps >= scene_.stop.max_steps) return "max_steps";
+    return "";
+  }
+
+  ExitCode finish(const std::string& reason) {
+    const ogive_progress progress = progress_of(world_.get());
+    output_.write_last(world_.get(), progress);
+    if (scene_.output.checkpoint_steps > 0) save_checkpoint(progress);
+    const double wall = wall_seconds();
+    output_.write_summary(world_.get(), {reason, threads_in_use(scene_.numerics), wall});
+
+    const ogive_ledger ledger = ledger_of(world_.get());
+    std::printf("ended (%s) at step %lld, time %s %s, after %s: %s particle-steps/s\n", reason.c_str(),
+                static_cast<long long>(progress.steps), brief(progress.time).c_str(), scene_.units.time.c_str(),
+                duration(wall).c_str(),
+                grouped(static_cast<int64_t>(static_cast<double>(progress.particle_steps) / wall)).c_str());
+    std::printf("energy: total %s %s of initially %s, unaccounted %+.3g %%\n", brief(ledger.total).c_str(),
+                scene_.units.energy().c_str(), brief(ledger.initial_total).c_str(), 100 * ledger.residual_relative);
+    std::printf("%s", output_.results_text(world_.get()).c_str());
+    std::printf("results are in %s\n", directory_.c_str());
+    return kExitOk;
+  }
+
+  ExitCode interrupt() {
+    const ogive_progress progress = progress_of(world_.get());
+    const std::filesystem::path file = save_checkpoint(progress);
+    std::printf("interrupted at step %lld, time %s %s; to go on: ogive restart %s\n",
+                static_cast<long long>(progress.steps), brief(progress.time).c_str(), scene_.units.time.c_str(),
+                file.c_str());
+    return kExitInterrupted;
+  }
+
+  /// The state that broke down, for whoever looks for the cause. What made it break is the message that counts.
+  [[noreturn]] void save_failed_state() {
+    std::string message = ogive_world_message(world_.get());
+    const std::filesystem::path file = directory_ / "failed-state.h5";
+    try {
+      output_.flush_to_disk();
+      write_checkpoint(world_.get(), file, scene_.text, state_);
+      message += "; the state before is in " + file.string();
+    } catch (const std::exception& failure) {
+      message += "; the state could not be saved: " + std::string(failure.what());
+    }
+    throw Failure(kExitNumerical, "the computation broke down: " + message);
+  }
+
+  Scene scene_;
+  World world_;
+  std::filesystem::path directory_;
+  DriverState state_;
+  Output output_;
+  double wall_seconds_before_;
+  ogive_progress start_;
+  Progress display_;
+  std::exception_ptr problem_;
+};
+
+void print_beginning(const Scene& scene, const ogive_world* world, const std::filesystem::path& directory) {
+  const ogive_progress progress = progress_of(world);
+  std::printf("%s: %s particles in %d bodies, %d threads, to time %s %s, into %s\n", scene.title.c_str(),
+              grouped(progress.particles).c_str(), ogive_body_count(world), threads_in_use(scene.numerics),
+              brief(scene.stop.time).c_str(), scene.units.time.c_str(), directory.c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+ExitCode run(const RunOptions& options) {
+  Document document = Document::from_file(options.scene_file, options.settings);
+  if (options.until) set_option(document, "stop.time", shortest(*options.until), "--until");
+  if (options.threads) set_option(document, "numerics.threads", std::to_string(*options.threads), "--threads");
+  const Scene scene = read_scene(document, options.scene_file);
+  const std::filesystem::path directory = options.output ? std::filesystem::path(*options.output)
+                                                         : std::filesystem::path(scene.file.stem().string() + "-out");
+  require_usable_directory(directory, options.overwrite);
+
+  BuiltWorld built = build_world(scene);
+  for (const std::string& note : built.notes) std::printf("%s\n", note.c_str());
+  print_beginning(scene, built.world.get(), directory);
+
+  // Only now that the whole model has been accepted is anything written.
+  catch_signals();
+  clear_directory(directory);
+  DriverState state;
+  state.scene_file = options.scene_file;
+  return Simulation(scene, std::move(built.world), directory, std::move(state)).run_from_start();
+}
+
+ExitCode restart(const RestartOptions& options) {
+  std::vector<std::string> notes;
+  LoadedCheckpoint loaded = load_checkpoint(options.checkpoint, notes);
+  for (const std::string& note : notes) std::printf("%s\n", note.c_str());
+
+  Document document = Document::from_text(loaded.scene_text, "scene in " + loaded.file.string());
+  if (options.until) set_option(document, "stop.time", shortest(*options.until), "--until");
+  if (options.threads) set_option(document, "numerics.threads", std::to_string(*options.threads), "--threads");
+  const Scene scene = read_scene(document, loaded.state.scene_file);
+  const ogive_progress progress = progress_of(loaded.world.get());
+  if (options.until && *options.until < progress.time) {
+    throw Failure(kExitInput, "--until " + shortest(*options.until) + ": must be >= the checkpoint's time (" +
+                                  shortest(progress.time) + ' ' + scene.units.time + ')');
+  }
+  require_ok(ogive_world_set_threads(loaded.world.get(), scene.numerics.threads.value_or(1)), loaded.world.get());
+
+  std::filesystem::path home = loaded.file.parent_path();
+  if (home.empty()) home = ".";
+  const std::filesystem::path directory = options.output ? std::filesystem::path(*options.output) : home;
+  std::error_code ignored;
+  const bool at_home = std::filesystem::equivalent(directory, home, ignored);
+  if (!at_home) require_usable_directory(directory, options.overwrite);
+  std::printf("from %s: step %lld, time %s %s\n", loaded.file.c_str(), static_cast<long long>(progress.steps),
+              brief(progress.time).c_str(), scene.units.time.c_str());
+  print_beginning(scene, loaded.world.get(), directory);
+
+  catch_signals();
+  if (!at_home) clear_directory(directory);
+  Simulation simulation(scene, std::move(loaded.world), directory, std::move(loaded.state));
+  // A checkpoint that was brought here alone has no history to go on with.
+  const bool has_history = at_home && std::filesystem::exists(directory / "history.csv", ignored);
+  return has_history ? simulation.run_on_in_directory() : simulation.run_into_new_directory();
+}
+
+}  // namespace driver

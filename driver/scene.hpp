@@ -1,0 +1,150 @@
+// A scene as plain values: what the file says, checked as far as can be done without the engine.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "document.hpp"
+#include "units.hpp"
+
+namespace driver {
+
+using Vector3 = std::array<double, 3>;
+
+// An empty optional leaves the engine's default (ogive.h) in force. Integers that choose hold OGIVE_* values.
+
+struct GridScene {
+  double cell_size = 0;
+  Vector3 lower{}, upper{};
+  std::array<int32_t, 6> faces{};
+};
+
+struct NumericsScene {
+  std::optional<int32_t> shape_function;
+  std::optional<double> time_step_factor;
+  std::optional<double> maximum_time_step;
+  std::optional<int32_t> threads;
+  Vector3 gravity{};
+};
+
+struct ContactScene {
+  std::optional<int32_t> method;
+  std::optional<int32_t> normal;
+  std::optional<std::string> master;
+  std::optional<double> friction;
+  std::optional<int32_t> detection;
+  std::optional<double> gap_offset;
+};
+
+struct ContactPairScene {
+  std::array<std::string, 2> bodies;
+  ContactScene rule;  // the scene's contact with this pair's changes
+};
+
+struct MaterialScene {
+  std::string name;
+  double density = 0;
+  int32_t strength = 0;
+  int32_t equation_of_state = 0;
+  std::optional<double> youngs_modulus, poisson_ratio, bulk_modulus, shear_modulus;
+  std::optional<double> yield_stress, hardening_modulus, hardening_exponent;
+  std::optional<double> rate_coefficient, reference_strain_rate;
+  std::optional<double> thermal_exponent, melt_temperature, room_temperature, specific_heat, taylor_quinney;
+  std::optional<double> eos_sound_speed, eos_slope, gruneisen;
+  std::optional<double> failure_strain;
+  std::optional<double> viscosity_linear, viscosity_quadratic;
+};
+
+/// A closed surface from a file, filled with particles.
+struct MeshShape {
+  std::filesystem::path file;
+  Vector3 spacing{};
+  Vector3 axis{0, 0, 1};
+  Vector3 reference{};
+  Vector3 position{};
+  double scale = 1;
+  Vector3 lattice_axis{0, 0, 1}, lattice_reference{}, lattice_origin{};
+};
+
+/// A solid that the engine fills by itself.
+struct SolidShape {
+  std::string kind;  // the scene's key: box, cylinder, sphere, ogive_rod
+  int32_t solid = 0;
+  int32_t lattice = 0;
+  Vector3 size{}, centre{}, axis{0, 0, 1}, reference{}, spacing{};
+};
+
+/// Particles as they are, from a CSV file.
+struct ParticleFileShape {
+  std::filesystem::path file;
+};
+
+struct BodyScene {
+  std::string name;
+  std::string material;
+  Vector3 velocity{}, angular_velocity{}, angular_centre{};
+  std::variant<MeshShape, SolidShape, ParticleFileShape> shape;
+};
+
+struct ClampScene {
+  int32_t region = 0;
+  Vector3 a{}, b{};
+  double radius = 0;
+  std::optional<std::string> body;
+  int32_t axes = 7;
+};
+
+struct StopScene {
+  double time = 0;
+  std::optional<std::string> body;
+  std::optional<double> settle_window, settle_tolerance;
+  std::optional<bool> stop_when_stopped, stop_when_out;
+  int64_t max_steps = 0;  // 0: no limit
+};
+
+/// One entry of [output] results.
+struct ResultScene {
+  std::string name;  // what is measured, so far residual_velocity
+  std::string body;
+};
+
+struct OutputScene {
+  double history_interval = 0;
+  double particle_interval = 0;  // 0: none
+  int64_t checkpoint_steps = 0;  // 0: none
+  int64_t checkpoint_keep = 3;
+  std::vector<ResultScene> results;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string text;  // the file with every --set merged into it
+  std::string title;
+  std::map<std::string, double> parameters;
+  Units units;
+  GridScene grid;
+  NumericsScene numerics;
+  ContactScene contact;
+  std::vector<ContactPairScene> contact_pairs;
+  std::vector<MaterialScene> materials;  // in the order of the file
+  std::vector<BodyScene> bodies;         // in the order of the file
+  std::vector<ClampScene> clamps;
+  StopScene stop;
+  OutputScene output;
+  std::map<std::string, std::string> places;
+
+  /// "scene.toml:14:3: bodies.rod": where `path`, or else the table around it, was written, and the path itself.
+  std::string place(const std::string& path) const;
+};
+
+/// Checks every key and value; throws Failure(kExitInput) with place, key, value and expectation of the first wrong
+/// one.
+Scene read_scene(const Document& document, const std::filesystem::path& file);
+
+}  // namespace driver

@@ -1,0 +1,265 @@
+// Scenes are read without an engine: values, expressions, --set, and every message with its place.
+#include "scene.hpp"
+
+#include <gtest/gtest.h>
+#include <ogive.h>
+
+#include <cmath>
+
+#include "expression.hpp"
+#include "failure.hpp"
+#include "text.hpp"
+
+namespace {
+
+using driver::Document;
+using driver::Failure;
+using driver::Scene;
+
+constexpr const char* kScene = R"toml([units]
+length = "mm"
+time = "ms"
+mass = "g"
+[parameters]
+half = "V0/2"
+V0 = 100
+[grid]
+cell_size = 1
+lower = [0, 0, 0]
+upper = [10, 10, 10]
+[materials.zinc]
+density = 1
+[materials.zinc.elastic]
+youngs_modulus = 10
+poisson_ratio = 0.25
+[bodies.target]
+material = "zinc"
+box = { size = [1, 1, 1], centre = [5, 5, 5] }
+spacing = 0.5
+[bodies.ball]
+material = "zinc"
+sphere = { radius = 1 }
+spacing = [0.5, 0.25, 0.5]
+velocity = ["half*cos(60*deg)", "-V0", 1.5]
+[stop]
+time = 2
+)toml";
+
+Scene scene_of(const std::vector<std::pair<std::string, std::string>>& settings = {}, const std::string& more = "") {
+  Document document = Document::from_text(kScene + more, "scene.toml");
+  for (const auto& [path, value] : settings) document.set(path, value, "--set " + path + "=" + value);
+  return driver::read_scene(document, "scene.toml");
+}
+
+/// The message that reading ends with, "" if it does not.
+std::string refusal(const std::vector<std::pair<std::string, std::string>>& settings, const std::string& more = "") {
+  try {
+    scene_of(settings, more);
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), driver::kExitInput);
+    return failure.what();
+  }
+  return "";
+}
+
+TEST(Scene, values_and_expressions) {
+  const Scene scene = scene_of();
+  EXPECT_EQ(scene.grid.cell_size, 1.0);
+  EXPECT_EQ(scene.parameters.at("half"), 50.0);
+  ASSERT_EQ(scene.bodies.size(), 2U);
+  EXPECT_EQ(scene.bodies[0].name, "target");  // the order of the file, not of the alphabet
+  EXPECT_NEAR(scene.bodies[1].velocity[0], 25.0, 1e-13);
+  EXPECT_EQ(scene.bodies[1].velocity[1], -100.0);
+  EXPECT_EQ(scene.bodies[1].velocity[2], 1.5);
+  const auto& ball = std::get<driver::SolidShape>(scene.bodies[1].shape);
+  EXPECT_EQ(ball.solid, OGIVE_SOLID_SPHERE);
+  EXPECT_EQ(ball.spacing[1], 0.25);
+  EXPECT_EQ(scene.stop.time, 2.0);
+  EXPECT_EQ(scene.units.speed(), "m/s");
+  EXPECT_EQ(scene.units.energy(), "mJ");
+}
+
+TEST(Scene, thick_plate_example) {
+  const std::string file = std::string(OGIVE_SCENES) + "/thick_plate/scene.toml";
+  const Document document = Document::from_file(file, {"parameters.V0=400", "contact.method=huang_first"});
+  const Scene scene = driver::read_scene(document, file);
+  EXPECT_EQ(scene.contact.method, OGIVE_CONTACT_HUANG_FIRST);
+  EXPECT_EQ(scene.bodies[0].name, "rod");
+  EXPECT_NEAR(scene.bodies[0].velocity[0], 200.0, 1e-12);
+  EXPECT_EQ(scene.grid.faces[2], OGIVE_FACE_SYMMETRY);
+  EXPECT_EQ(std::get<driver::MeshShape>(scene.bodies[0].shape).file,
+            std::filesystem::path(OGIVE_SCENES) / "thick_plate/rod.stl");
+  ASSERT_EQ(scene.output.results.size(), 1U);
+  EXPECT_EQ(scene.output.results[0].name, "residual_velocity");
+  EXPECT_EQ(scene.output.results[0].body, "rod");
+}
+
+TEST(Scene, merged_text_reads_back_as_the_same_scene) {
+  const Scene first =
+      scene_of({{"stop.time", "0.1"}, {"title", "say \"hello\" \\ there"}, {"bodies.ball.velocity.2", "V0/3"}});
+  const Scene second = driver::read_scene(Document::from_text(first.text, "copy"), "scene.toml");
+  EXPECT_EQ(second.stop.time, 0.1);
+  EXPECT_EQ(second.title, "say \"hello\" \\ there");
+  EXPECT_EQ(second.parameters, first.parameters);
+  EXPECT_EQ(second.text, first.text);
+}
+
+TEST(Scene, settings_are_toml_or_text) {
+  EXPECT_EQ(scene_of({{"contact.method", "huang_first"}}).contact.method, OGIVE_CONTACT_HUANG_FIRST);
+  EXPECT_EQ(scene_of({{"contact.method", "\"huang_first\""}}).contact.method, OGIVE_CONTACT_HUANG_FIRST);
+  EXPECT_EQ(scene_of({{"stop.time", "3*V0"}}).stop.time, 300.0);
+  EXPECT_EQ(scene_of({{"grid.upper", "[20, 20, 20]"}}).grid.upper[1], 20.0);
+  EXPECT_EQ(scene_of({{"grid.upper.1", "30"}}).grid.upper[1], 30.0);
+  EXPECT_EQ(scene_of({{"numerics.gravity", "[0, 0, -9.81]"}}).numerics.gravity[2], -9.81);
+  EXPECT_EQ(scene_of({{"grid.faces.x_min", "fixed"}}).grid.faces[0], OGIVE_FACE_FIXED);
+}
+
+TEST(Scene, materials_of_every_law) {
+  const Scene scene = scene_of({}, R"toml([materials.rubber]
+density = 2
+neo_hookean = { bulk_modulus = 5, shear_modulus = 1 }
+viscosity = { linear = 0.06, quadratic = 1.5 }
+[materials.copper]
+density = 3
+j2_power = { youngs_modulus = 10, poisson_ratio = 0.3, A = 1, B = 2, n = 0.5 }
+failure = { plastic_strain = 1.5 }
+[materials.steel]
+density = 4
+mie_gruneisen = { c0 = 1, s = 2, gamma0 = 3 }
+[materials.steel.johnson_cook]
+youngs_modulus = 10
+poisson_ratio = 0.3
+A = 1
+C = 0.01
+reference_strain_rate = 0.001
+m = 1
+melt_temperature = 1800
+specific_heat = 400
+)toml");
+  ASSERT_EQ(scene.materials.size(), 4U);
+  EXPECT_EQ(scene.materials[1].strength, OGIVE_STRENGTH_NEO_HOOKEAN);
+  EXPECT_EQ(scene.materials[1].viscosity_quadratic, 1.5);
+  EXPECT_EQ(scene.materials[2].strength, OGIVE_STRENGTH_J2_POWER);
+  EXPECT_EQ(scene.materials[2].failure_strain, 1.5);
+  EXPECT_EQ(scene.materials[3].strength, OGIVE_STRENGTH_JOHNSON_COOK);
+  EXPECT_EQ(scene.materials[3].equation_of_state, OGIVE_EOS_MIE_GRUNEISEN);
+  EXPECT_EQ(scene.materials[3].gruneisen, 3.0);
+}
+
+TEST(Scene, contact_pairs_and_clamps) {
+  const Scene scene = scene_of({{"contact.friction", "0.2"}}, R"toml([[contact.pairs]]
+bodies = ["ball", "target"]
+friction = 0.5
+normal = "master"
+master = "ball"
+[[clamps]]
+region = "box"
+lower = [0, 0, 0]
+upper = [1, 1, 1]
+body = "target"
+axes = "xz"
+[[clamps]]
+region = "outside_cylinder"
+centre = [5, 5, 5]
+axis = [0, 0, 2]
+radius = 4
+)toml");
+  ASSERT_EQ(scene.contact_pairs.size(), 1U);
+  EXPECT_EQ(scene.contact.friction, 0.2);
+  EXPECT_EQ(scene.contact_pairs[0].rule.friction, 0.5);
+  EXPECT_EQ(scene.contact_pairs[0].rule.master, "ball");
+  ASSERT_EQ(scene.clamps.size(), 2U);
+  EXPECT_EQ(scene.clamps[0].axes, 5);
+  EXPECT_EQ(scene.clamps[1].axes, 7);
+  EXPECT_EQ(scene.clamps[1].radius, 4.0);
+}
+
+TEST(Scene, messages_name_place_key_value_and_expectation) {
+  EXPECT_EQ(refusal({{"materials.zinc.density", "-7850"}}),
+            "--set materials.zinc.density=-7850: materials.zinc.density: must be > 0, got -7850");
+  EXPECT_EQ(refusal({{"grid.cell_sise", "1"}}),
+            "--set grid.cell_sise=1: grid.cell_sise: unknown key; did you mean \"cell_size\"? "
+            "(known here: cell_size, lower, upper, faces)");
+  EXPECT_EQ(refusal({{"stop.time", "nan"}}), "--set stop.time=nan: stop.time: must be finite, got nan");
+  EXPECT_EQ(refusal({{"stop.time", "V1*2"}}),
+            "--set stop.time=V1*2: stop.time: must be a number or an expression, got \"V1*2\": the name \"V1\" is "
+            "unknown; did you mean \"V0\"? (known: V0, half, deg, pi)");
+  EXPECT_EQ(refusal({{"grid.upper.1", "-1"}}),
+            "--set grid.upper.1=-1: grid.upper[1]: must be > grid.lower[1] (0), got -1");
+  EXPECT_EQ(refusal({{"contact.method", "huang_frist"}}),
+            "--set contact.method=huang_frist: contact.method: must be one of single_field, huang_first, huang_second, "
+            "got \"huang_frist\"; did you mean \"huang_first\"?");
+  EXPECT_EQ(
+      refusal({{"bodies.ball.material", "zink"}}),
+      "--set bodies.ball.material=zink: bodies.ball.material: must be the name of a material of the scene (zinc), "
+      "got \"zink\"; did you mean \"zinc\"?");
+  EXPECT_EQ(refusal({{"units.length", "furlong"}}),
+            "--set units.length=furlong: units.length: must be one of m, cm, mm, um, in, ft, got \"furlong\"");
+}
+
+TEST(Scene, messages_give_line_and_column) {
+  EXPECT_EQ(refusal({}, "when = 3\n"),
+            "scene.toml:28:1: stop.when: unknown key (known here: time, body, settle_window, "
+            "settle_tolerance, stop_when_stopped, stop_when_out, max_steps)");
+  EXPECT_EQ(refusal({}, "[output]\nhistory_interval = 0\n"),
+            "scene.toml:29:20: output.history_interval: must be > 0, got 0");
+  EXPECT_EQ(refusal({}, "[numerics\n").substr(0, 32), "scene.toml:28:10: not valid TOML");
+  EXPECT_EQ(refusal({}, "[materials.lead]\ndensity = 1\n").substr(0, 40), "scene.toml:28:1: materials.lead: needs e");
+}
+
+TEST(Scene, refuses_what_does_not_go_together) {
+  EXPECT_NE(refusal({{"bodies.ball.box.size", "[1,1,1]"}}).find("needs exactly one of mesh, box"), std::string::npos);
+  EXPECT_NE(refusal({{"bodies.ball.scale", "2"}}).find("bodies.ball.scale: unknown key"), std::string::npos);
+  EXPECT_NE(refusal({{"materials.zinc.elastic.bulk_modulus", "2"}}).find("got some of both"), std::string::npos);
+  EXPECT_NE(refusal({{"stop.settle_window", "2"}}).find("needs stop.body"), std::string::npos);
+  EXPECT_NE(refusal({{"parameters.pi", "3"}}).find("constant of its own"), std::string::npos);
+  EXPECT_NE(refusal({{"parameters.V0", "half+1"}}).find("in a circle"), std::string::npos);
+  EXPECT_NE(refusal({{"numerics.threads", "1.5"}}).find("must be a whole number from 0 to 1024, got 1.5"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"grid.lower", "7"}}).find("must be a list of 3 numbers, got the number 7"), std::string::npos);
+  EXPECT_NE(refusal({{"bodies", "{}"}}).find("must hold at least one body"), std::string::npos);
+  EXPECT_NE(refusal({{"bodies.ball.velocity", "[1, 2]"}}).find("must be a list of 3 numbers, got 2"),
+            std::string::npos);
+}
+
+TEST(Setting, path_must_lead_somewhere) {
+  EXPECT_NE(refusal({{"grid.cell_size.x", "1"}}).find("cannot be set inside the number 1"), std::string::npos);
+  EXPECT_NE(refusal({{"grid.lower.3", "1"}}).find("cannot be set inside a list"), std::string::npos);
+  EXPECT_NE(refusal({{"grid..lower", "1"}}).find("expected path.to.key=value"), std::string::npos);
+  EXPECT_NE(refusal({{"", "1"}}).find("expected path.to.key=value"), std::string::npos);
+}
+
+TEST(Expression, evaluates_or_says_why_not) {
+  driver::Expressions expressions;
+  EXPECT_EQ(expressions.define("a", 3), "");
+  std::string problem;
+  EXPECT_EQ(expressions.evaluate("a^2 + 1e1", problem), 19.0);
+  EXPECT_EQ(problem, "");
+  EXPECT_NEAR(expressions.evaluate("sin(30*deg) + pi", problem), 0.5 + M_PI, 1e-15);
+  for (const char* wrong : {"a+", "b", "1, 2", "", "sin()", "(a", "a = 3"}) {
+    expressions.evaluate(wrong, problem);
+    EXPECT_NE(problem, "") << wrong;
+  }
+  EXPECT_NE(expressions.define("deg", 3), "");
+  EXPECT_NE(expressions.define("two words", 3), "");
+}
+
+TEST(Text, nearest_word) {
+  const std::vector<std::string> known = {"density", "elastic", "viscosity"};
+  EXPECT_EQ(driver::nearest_word("desnity", known), "density");
+  EXPECT_EQ(driver::nearest_word("Elastic", known), "elastic");
+  EXPECT_EQ(driver::nearest_word("colour", known), "");
+}
+
+TEST(Text, numbers_for_people) {
+  EXPECT_EQ(driver::grouped(1234567), "1 234 567");
+  EXPECT_EQ(driver::grouped(-123), "-123");
+  EXPECT_EQ(driver::grouped(-1234), "-1 234");
+  EXPECT_EQ(driver::duration(245), "4 min 05 s");
+  EXPECT_EQ(driver::duration(7380), "2 h 03 min");
+  EXPECT_EQ(driver::bytes(1230000000), "1.23 GB");
+  EXPECT_EQ(driver::shortest(0.1), "0.1");
+  EXPECT_EQ(std::stod(driver::exact(0.1)), 0.1);
+}
+
+}  // namespace
