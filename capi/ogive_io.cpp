@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <new>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -154,8 +156,33 @@ void add_file_to_message(ogive_world* world, ogive_status status, const char* pa
   ogive_world_report(world, status, ("checkpoint '" + std::string(path) + "': " + reason).c_str());
 }
 
-// ----------------------------------------------------------------------------------------------------- text for
-// callers
+// ---------------------------------------------------------------------------------------------------------- particles
+
+// A symmetric tensor goes into the file in the order in which ParaView labels six components.
+constexpr char kTensorComponents[] = "xx yy zz xy yz xz";
+void reorder_tensors(std::vector<double>& values) {
+  for (std::size_t i = 0; i + 6 <= values.size(); i += 6) {  // from xx yy zz yz xz xy
+    const double yz = values[i + 3], xz = values[i + 4], xy = values[i + 5];
+    values[i + 3] = xy;
+    values[i + 4] = yz;
+    values[i + 5] = xz;
+  }
+}
+
+// 0, 1, 2 ...: what ParaView needs to see each particle as a point to draw. XDMF has no shorter way to say so.
+void put_connectivity(ArchiveWriter& archive, const std::string& path, std::uint64_t particles) {
+  const auto put = [&]<class Index>(Index, ElementType type) {
+    std::vector<Index> indices(static_cast<std::size_t>(particles));
+    std::iota(indices.begin(), indices.end(), Index{0});
+    archive.put(path, type, {particles}, indices.data());
+  };
+  if (particles <= static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
+    put(std::int32_t{}, ElementType::int32);
+  else
+    put(std::int64_t{}, ElementType::int64);
+}
+
+// --------------------------------------------------------------------------------------------------- text for callers
 
 void return_text(const std::string& text, char* out, size_t capacity, size_t* needed) {
   if (needed) *needed = text.size() + 1;
@@ -279,6 +306,7 @@ ogive_status ogive_particles_write(ogive_world* world, const char* path) {
     archive.set_attribute("", "time", progress.time);
     archive.set_attribute("", "steps", progress.steps);
     archive.set_attribute("", "particles", progress.particles);
+    archive.set_attribute("", "tensor_components", std::string(kTensorComponents));
     std::vector<double> values;
     for (std::int32_t i = 0; i < ogive_body_count(world); ++i) {
       const ogive_body_id body{i};
@@ -296,10 +324,12 @@ ogive_status ogive_particles_write(ogive_world* world, const char* path) {
         const std::uint64_t count = particles * static_cast<std::uint64_t>(components);
         values.resize(std::max<std::size_t>(count, 1));  // never a null pointer, also for a body that has left
         require(ogive_field_get(world, body, field_name, values.data(), static_cast<std::int64_t>(count)));
+        if (components == 6) reorder_tensors(values);
         std::vector<std::uint64_t> shape{particles};
         if (components > 1) shape.push_back(static_cast<std::uint64_t>(components));
         archive.put(group + "/" + ogive::io::path_component(field_name), ElementType::float64, shape, values.data());
       }
+      put_connectivity(archive, group + "/connectivity", particles);
     }
     archive.commit();
   });

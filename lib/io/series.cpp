@@ -52,34 +52,19 @@ std::string relative_to(const std::string& index, const std::string& file) {
 }
 
 std::string data_item(const std::string& file, const ArchiveReader::Array& array) {
-  return R"(<DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions=")" + shape_text(array.shape, " ") +
-         "\">" + xml(file) + ":/" + xml(array.path) + "</DataItem>";
-}
-
-// One column of an array, without a copy of it in the file.
-std::string column_item(const std::string& file, const ArchiveReader::Array& array, std::size_t column) {
-  const std::string rows = std::to_string(array.shape[0]);
-  return R"(<DataItem ItemType="HyperSlab" Dimensions=")" + rows + R"( 1"><DataItem Format="XML" Dimensions="3 2">0 )" +
-         std::to_string(column) + " 1 1 " + rows + " 1</DataItem>" + data_item(file, array) + "</DataItem>";
-}
-
-std::string attribute(const std::string& name, const char* type, const std::string& item) {
-  return R"(          <Attribute Name=")" + xml(name) + R"(" AttributeType=")" + type + R"(" Center="Node">)" + item +
-         "</Attribute>\n";
+  const char* kind = array.type == ElementType::float64 ? "Float" : array.type == ElementType::uint8 ? "UChar" : "Int";
+  return std::string(R"(<DataItem Format="HDF" NumberType=")") + kind + R"(" Precision=")" +
+         std::to_string(type_size(array.type)) + R"(" Dimensions=")" + shape_text(array.shape, " ") + "\">" +
+         xml(file) + ":/" + xml(array.path) + "</DataItem>";
 }
 
 std::string field(const std::string& name, const std::string& file, const ArchiveReader::Array& array) {
-  if (array.shape.size() == 1) return attribute(name, "Scalar", data_item(file, array));
-  if (array.shape[1] == 3) return attribute(name, "Vector", data_item(file, array));
-  if (array.shape[1] == 9) return attribute(name, "Tensor", data_item(file, array));
-  // XDMF and ParaView order a symmetric tensor each in its own way, and neither as mechanics does: six named scalars
-  // cannot be misread.
-  static constexpr const char* components[6] = {"xx", "yy", "zz", "yz", "xz", "xy"};
-  std::string text;
-  for (std::size_t i = 0; i < array.shape[1]; ++i)
-    text += attribute(name + "_" + (array.shape[1] == 6 ? components[i] : std::to_string(i)), "Scalar",
-                      column_item(file, array, i));
-  return text;
+  // Not "Tensor6": XDMF orders its components in another way than VTK does, and ParaView's readers disagree about who
+  // is right. A matrix arrives as it is stored, and ParaView labels six columns as the file orders them.
+  const std::uint64_t columns = array.shape.size() == 1 ? 1 : array.shape[1];
+  const char* type = columns == 1 ? "Scalar" : columns == 3 ? "Vector" : columns == 9 ? "Tensor" : "Matrix";
+  return R"(          <Attribute Name=")" + xml(name) + R"(" AttributeType=")" + type + R"(" Center="Node">)" +
+         data_item(file, array) + "</Attribute>\n";
 }
 
 std::string body_grid(const ArchiveReader& reader, const std::string& file, const std::string& group) {
@@ -87,17 +72,20 @@ std::string body_grid(const ArchiveReader& reader, const std::string& file, cons
   const auto* position = reader.find(group + "/position");
   // ParaView takes no empty grid: a body without particles is left out.
   if (!name || !position || position->count == 0) return "";
+  const auto* connectivity = reader.find(group + "/connectivity");
   const auto is_field = [&](const ArchiveReader::Array& array) {
     return array.type == ElementType::float64 && array.path.starts_with(group + "/") && array.shape.size() <= 2 &&
            array.shape[0] == position->shape[0];
   };
   if (!is_field(*position) || position->shape.size() != 2 || position->shape[1] != 3)
     throw Failure(Fault::format, "array '" + position->path + "' does not hold points");
+  if (!connectivity || connectivity->count != position->shape[0])
+    throw Failure(Fault::format, "has no array '" + group + "/connectivity' of as many elements as points");
   const std::string count = std::to_string(position->shape[0]);
   std::string text = R"(        <Grid Name=")" + xml(*name) + "\" GridType=\"Uniform\">\n" +
                      R"(          <Topology TopologyType="Polyvertex" NumberOfElements=")" + count +
-                     "\" NodesPerElement=\"1\"/>\n" + R"(          <Geometry GeometryType="XYZ">)" +
-                     data_item(file, *position) + "</Geometry>\n";
+                     "\" NodesPerElement=\"1\">" + data_item(file, *connectivity) + "</Topology>\n" +
+                     R"(          <Geometry GeometryType="XYZ">)" + data_item(file, *position) + "</Geometry>\n";
   for (const auto& array : reader.arrays())
     if (is_field(array) && &array != position) text += field(array.path.substr(group.size() + 1), file, array);
   return text + "        </Grid>\n";
