@@ -1,0 +1,1123 @@
+// The C interface over the engine: turns definition structs into the Model, guards every call, keeps messages.
+//
+// A world is in one of three stages: building (the model may change), ready (prepared or loaded), broken (a numerical
+// error ended the run; it may be looked at and saved, not stepped).
+#include "ogive.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <new>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "archive.hpp"
+#include "audit.hpp"
+#include "error.hpp"
+#include "grid.hpp"
+#include "model.hpp"
+#include "plan.hpp"
+#include "solids.hpp"
+#include "state.hpp"
+#include "step.hpp"
+
+using namespace ogive;
+
+enum class Stage { Building, Ready, Broken };
+
+struct ogive_world {
+  Stage stage = Stage::Building;
+  Model model;
+  State state;
+  Workspace workspace;
+  bool has_grid = false;
+  std::map<std::string, std::vector<std::uint8_t>> attachments;
+  mutable std::string message;
+};
+
+namespace {
+
+constexpr std::size_t longest_name = 63;
+
+// Messages must not need memory that there may not be.
+void set_message(const ogive_world* world, const char* text) noexcept {
+  try {
+    world->message = text;
+  } catch (...) {
+    world->message.clear();
+  }
+}
+
+// Runs work() and turns what it throws into a status.
+template <class Work>
+ogive_status guarded(const ogive_world* world, Work&& work) noexcept {
+  if (!world) return OGIVE_ERROR_ARGUMENT;
+  try {
+    work();
+    return OGIVE_OK;
+  } catch (const Error& error) {
+    set_message(world, error.what());
+    return static_cast<ogive_status>(error.kind());
+  } catch (const std::bad_alloc&) {
+    set_message(world, "memory could not be had");
+    return OGIVE_ERROR_MEMORY;
+  } catch (const std::length_error&) {
+    set_message(world, "memory could not be had: an array would be too long");
+    return OGIVE_ERROR_MEMORY;
+  } catch (const std::exception& error) {
+    set_message(world, error.what());
+    return OGIVE_ERROR_INTERNAL;
+  } catch (...) {
+    set_message(world, "unknown failure");
+    return OGIVE_ERROR_INTERNAL;
+  }
+}
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::Argument, message); }
+
+void require_stage(const ogive_world* world, Stage stage, const char* call) {
+  if (world->stage == stage) return;
+  const std::string name(call);
+  if (world->stage == Stage::Building)
+    throw Error(ErrorKind::State, name + ": the world must be prepared first (ogive_world_prepare)");
+  if (world->stage == Stage::Broken)
+    throw Error(ErrorKind::State, name + ": the run has broken down; its state can be looked at and saved, not advanced");
+  throw Error(ErrorKind::State, name + ": the world is prepared and its model frozen");
+}
+
+void require_prepared(const ogive_world* world, const char* call) {
+  if (world->stage == Stage::Building) require_stage(world, Stage::Ready, call);
+}
+
+void require_memory(const void* pointer, const char* name) {
+  if (!pointer) refuse(std::string(name) + ": must not be NULL");
+}
+
+template <class T>
+const T& require_pointer(const T* pointer, const char* name) {
+  require_memory(pointer, name);
+  return *pointer;
+}
+
+// The caller's struct in our size: what an older caller does not know stays at its default.
+template <class Def, class Init>
+Def complete(const Def* def, const char* name, Init init) {
+  require_pointer(def, name);
+  if (def->struct_size < 2 * sizeof(std::uint32_t) || def->struct_size > sizeof(Def))
+    refuse(std::string(name) + ".struct_size: must be at most " + std::to_string(sizeof(Def)) +
+           " as set by the struct's init function, got " + std::to_string(def->struct_size));
+  Def full;
+  init(&full, sizeof full);
+  std::memcpy(static_cast<void*>(&full), def, def->struct_size);
+  return full;
+}
+
+// Fills a result struct of the caller's size.
+template <class Result>
+void deliver(const Result& full, Result* to, const char* name) {
+  const std::uint32_t size = require_pointer(to, name).struct_size;
+  if (size < 2 * sizeof(std::uint32_t) || size > sizeof(Result))
+    refuse(std::string(name) + ".struct_size: must be set to the size of the struct, at most " +
+           std::to_string(sizeof(Result)) + ", got " + std::to_string(size));
+  std::memcpy(static_cast<void*>(to), &full, size);
+  to->struct_size = size;
+}
+
+template <class Def>
+void initialise(Def* def, size_t size, const Def& defaults) {
+  if (!def) return;
+  const std::size_t known = std::min(size, sizeof(Def));
+  std::memset(static_cast<void*>(def), 0, known);
+  std::memcpy(static_cast<void*>(def), &defaults, known);
+  const std::uint32_t stored = static_cast<std::uint32_t>(known);
+  if (known >= sizeof stored) std::memcpy(static_cast<void*>(def), &stored, sizeof stored);
+}
+
+Vector3 vector_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+std::string checked_name(const char* name, const char* what) {
+  require_pointer(name, "name");
+  const std::size_t length = std::strlen(name);
+  if (length < 1 || length > longest_name)
+    refuse(std::string(what) + " name: must have 1..63 characters, got " + std::to_string(length));
+  return name;
+}
+
+int processors() {
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
+  return 1;
+}
+
+void set_threads(ogive_world* world, std::int32_t threads) {
+  if (threads < 0 || threads > 1024) refuse("threads: must be 0..1024, got " + std::to_string(threads));
+  world->workspace.threads = threads == 0 ? processors() : threads;
+}
+
+void copy_text(const std::string& text, char* to, size_t capacity, size_t* needed) {
+  if (needed) *needed = text.size() + 1;
+  if (!to || capacity == 0) return;
+  const std::size_t n = std::min(capacity - 1, text.size());
+  std::memcpy(to, text.data(), n);
+  to[n] = 0;
+}
+
+const BodyState& body_of(const ogive_world* world, ogive_body_id id) {
+  if (id.index < 0 || id.index >= static_cast<std::int32_t>(world->state.bodies.size()))
+    refuse("body: must be 0.." + std::to_string(static_cast<int>(world->state.bodies.size()) - 1) + ", got " +
+           std::to_string(id.index));
+  return world->state.bodies[id.index];
+}
+
+void require_body_or_none(const ogive_world*, ogive_body_id id, const char* name) {
+  if (id.index < -1) refuse(std::string(name) + ": must be a body's id or -1, got " + std::to_string(id.index));
+}
+
+// ------------------------------------------------------------------------------------------------------------- bodies
+
+std::string place_text(const double* x) {
+  char buffer[96];
+  std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
+  return buffer;
+}
+
+ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_body_def* def, std::int64_t count,
+                            const double* xyz, const double* volume) {
+  require_stage(world, Stage::Building, "ogive_body_add");
+  if (!world->has_grid) throw Error(ErrorKind::State, "ogive_body_add: the grid must be set first (ogive_world_set_grid)");
+  const std::string body_name = checked_name(name, "body");
+  const ogive_body_def full = complete(def, "def", ogive_body_def_init);
+  const std::string prefix = "body \"" + body_name + "\": ";
+  for (const Body& other : world->model.bodies)
+    if (other.name == body_name) refuse(prefix + "name is already taken");
+  if (full.material.index < 0 || full.material.index >= static_cast<std::int32_t>(world->model.materials.size()))
+    refuse(prefix + "material: must be the id of a material, got " + std::to_string(full.material.index));
+  for (int c = 0; c < 3; ++c)
+    if (!std::isfinite(full.velocity[c]) || !std::isfinite(full.angular_velocity[c]) || !std::isfinite(full.angular_centre[c]))
+      refuse(prefix + "velocity, angular_velocity and angular_centre must be finite");
+  if (world->model.bodies.size() >= 60000) refuse(prefix + "at most 60000 bodies");
+  if (count < 1) refuse(prefix + "must have at least one particle, got " + std::to_string(count));
+  if (count >= (std::int64_t{1} << 31) - 64) refuse(prefix + "must have fewer than 2^31 particles");
+  require_pointer(xyz, "xyz");
+  require_pointer(volume, "volume");
+
+  const Grid& grid = world->model.grid;
+  const Material& material = world->model.materials[full.material.index];
+  std::vector<std::int64_t> kept;
+  std::vector<double> share;
+  kept.reserve(static_cast<std::size_t>(count));
+  share.reserve(static_cast<std::size_t>(count));
+  for (std::int64_t p = 0; p < count; ++p) {
+    const double* x = xyz + 3 * p;
+    if (!(volume[p] > 0 && std::isfinite(volume[p])))
+      refuse(prefix + "volume of particle " + std::to_string(p) + ": must be > 0 and finite, got " +
+             std::to_string(volume[p]));
+    double part = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(x[axis])) refuse(prefix + "position of particle " + std::to_string(p) + ": must be finite");
+      for (int side = 0; side < 2; ++side) {
+        const double inside = side == 0 ? x[axis] - grid.domain_min[axis] : grid.domain_max[axis] - x[axis];
+        if (grid.face[2 * axis + side] == Face::Symmetry) {
+          // Cut at the mirror; a particle whose centre lies on it keeps the half that is inside.
+          if (std::abs(inside) <= 1e-9 * grid.cell_size) part *= 0.5;
+          else if (inside < 0) part = 0;
+        } else if (inside < 0) {
+          refuse(prefix + "must lie inside the domain; particle " + std::to_string(p) + " at " + place_text(x) +
+                 " is outside the " + "xyz"[axis] + (side == 0 ? " min" : " max") + " face");
+        }
+      }
+    }
+    if (part > 0) {
+      kept.push_back(p);
+      share.push_back(part);
+    }
+  }
+  if (kept.empty()) refuse(prefix + "nothing is left of it inside the symmetry faces");
+
+  BodyState body;
+  body.particles = static_cast<std::int64_t>(kept.size());
+  allocate_particles(material, body.particles, body);
+  Vector3 momentum{};
+  double mass_sum = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const double* x = xyz + 3 * kept[i];
+    const double mass = material.density * volume[kept[i]] * share[i];
+    for (int c = 0; c < 3; ++c) {
+      const int d = (c + 1) % 3, e = (c + 2) % 3;
+      body.position[4 * i + c] = x[c];
+      const double v = full.velocity[c] + full.angular_velocity[d] * (x[e] - full.angular_centre[e]) -
+                       full.angular_velocity[e] * (x[d] - full.angular_centre[d]);
+      body.velocity[4 * i + c] = v;
+      momentum[c] += mass * v;
+    }
+    body.position[4 * i + 3] = mass;
+    body.velocity[4 * i + 3] = 1;
+    body.number[i] = static_cast<std::int32_t>(kept[i]);
+    mass_sum += mass;
+  }
+  for (int c = 0; c < 3; ++c) body.totals.initial_velocity[c] = momentum[c] / mass_sum;
+
+  Body rules;
+  rules.name = body_name;
+  rules.material = full.material.index;
+  // Both or neither, should memory fail.
+  world->model.bodies.reserve(world->model.bodies.size() + 1);
+  world->state.bodies.reserve(world->state.bodies.size() + 1);
+  world->model.bodies.push_back(std::move(rules));
+  world->state.bodies.push_back(std::move(body));
+  return {static_cast<std::int32_t>(world->model.bodies.size()) - 1};
+}
+
+SolidDef solid_of(const ogive_solid_def* def) {
+  const ogive_solid_def full = complete(def, "solid", ogive_solid_def_init);
+  SolidDef solid;
+  solid.shape = static_cast<SolidShape>(full.solid);
+  solid.lattice = static_cast<Lattice>(full.lattice);
+  solid.size = vector_of(full.size);
+  solid.centre = vector_of(full.centre);
+  solid.axis = vector_of(full.axis);
+  solid.reference = vector_of(full.reference);
+  solid.spacing = vector_of(full.spacing);
+  return solid;
+}
+
+// Two bodies overlap where they together fill a node's shape function clearly more than a solid can. Lattices fill a node
+// to within some percent, so that bodies that only touch stay well below the limit.
+void refuse_overlap(const Model& model, const State& state) {
+  constexpr double limit = 1.35, least_share = 0.15;
+  const double h = model.grid.cell_size;
+  std::vector<BodyAudit> audits;
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) audits.push_back(audit_body(model, state, b));
+  for (int a = 0; a < static_cast<int>(audits.size()); ++a)
+    for (int b = a + 1; b < static_cast<int>(audits.size()); ++b) {
+      Vector3 lower, upper;
+      bool apart = false;
+      for (int c = 0; c < 3; ++c) {
+        lower[c] = std::max(audits[a].lower[c], audits[b].lower[c]) - h;
+        upper[c] = std::min(audits[a].upper[c], audits[b].upper[c]) + h;
+        apart = apart || lower[c] > upper[c];
+      }
+      if (apart) continue;
+      std::unordered_map<std::uint64_t, std::array<double, 2>> fill;
+      for (int side = 0; side < 2; ++side) {
+        const int index = side == 0 ? a : b;
+        const BodyState& body = state.bodies[index];
+        const double inverse = 1.0 / (model.material_of(index).density * h * h * h);
+        for (std::int64_t p = 0; p < body.padded; ++p) {
+          const double* x = &body.position[4 * p];
+          if (x[3] == 0) continue;
+          std::int64_t first[3];
+          double f[3];
+          bool outside = false;
+          for (int c = 0; c < 3; ++c) {
+            outside = outside || x[c] < lower[c] || x[c] > upper[c];
+            const double xi = (x[c] - model.grid.domain_min[c]) / h;
+            first[c] = static_cast<std::int64_t>(std::floor(xi));
+            f[c] = xi - static_cast<double>(first[c]);
+          }
+          if (outside) continue;
+          for (int n = 0; n < 8; ++n) {
+            double weight = x[3] * inverse;
+            std::uint64_t key = 0;
+            for (int c = 0; c < 3; ++c) {
+              const int up = n >> c & 1;
+              weight *= up ? f[c] : 1 - f[c];
+              key = key << 21 | static_cast<std::uint64_t>(first[c] + up + 1000);
+            }
+            fill[key][side] += weight;
+          }
+        }
+      }
+      const std::pair<const std::uint64_t, std::array<double, 2>>* worst = nullptr;
+      for (const auto& entry : fill) {
+        const auto& share = entry.second;
+        if (std::min(share[0], share[1]) < least_share || share[0] + share[1] < limit) continue;
+        if (!worst || share[0] + share[1] > worst->second[0] + worst->second[1] ||
+            (share[0] + share[1] == worst->second[0] + worst->second[1] && entry.first < worst->first))
+          worst = &entry;
+      }
+      if (worst) {
+        double x[3];
+        for (int c = 0; c < 3; ++c)
+          x[c] = model.grid.domain_min[c] +
+                 h * (static_cast<double>(worst->first >> (21 * (2 - c)) & 0x1fffff) - 1000);
+        refuse("bodies \"" + model.bodies[a].name + "\" and \"" + model.bodies[b].name +
+               "\": must not overlap; both fill the space near " + place_text(x));
+      }
+    }
+}
+
+// ------------------------------------------------------------------------------------------------------------- fields
+
+struct Field {
+  const char* name;
+  int components;
+  bool settable;
+};
+const Field all_fields[] = {
+    {"position", 3, false},      {"velocity", 3, true},     {"mass", 1, false},        {"volume", 1, false},
+    {"stress", 6, true},         {"pressure", 1, false},    {"von_mises", 1, false},   {"energy", 1, true},
+    {"plastic_strain", 1, true}, {"temperature", 1, true},  {"failed", 1, false},      {"number", 1, false},
+    {"deformation_gradient", 9, false},
+};
+
+bool has_field(const Material& material, const Field& field) {
+  const std::string name(field.name);
+  if (name == "plastic_strain") return material.plastic();
+  if (name == "temperature") return material.thermal();
+  if (name == "failed") return material.failure != Failure::None;
+  if (name == "deformation_gradient") return material.hyperelastic();
+  return true;
+}
+
+const Field& field_named(const ogive_world* world, ogive_body_id body, const char* name) {
+  body_of(world, body);
+  require_pointer(name, "name");
+  const Material& material = world->model.material_of(body.index);
+  for (const Field& field : all_fields)
+    if (std::strcmp(field.name, name) == 0) {
+      if (!has_field(material, field))
+        refuse("field \"" + std::string(name) + "\": the material \"" + material.name + "\" of this body does not keep it");
+      return field;
+    }
+  refuse("field: must be a name that ogive_field_name gives, got \"" + std::string(name) + "\"");
+}
+
+// Places of the particles in order of their numbers.
+std::vector<std::int64_t> by_number(const BodyState& body) {
+  std::vector<std::int64_t> place;
+  place.reserve(static_cast<std::size_t>(body.particles));
+  std::int32_t highest = -1;
+  for (const std::int32_t n : body.number) highest = std::max(highest, n);
+  std::vector<std::int64_t> of_number(static_cast<std::size_t>(highest) + 1, -1);
+  for (std::int64_t p = 0; p < body.padded; ++p)
+    if (body.number[p] >= 0) of_number[body.number[p]] = p;
+  for (const std::int64_t p : of_number)
+    if (p >= 0) place.push_back(p);
+  return place;
+}
+
+void check_count(const BodyState& body, const Field& field, std::int64_t count) {
+  if (count != body.particles * field.components)
+    refuse("count: must be particles x components = " + std::to_string(body.particles * field.components) + ", got " +
+           std::to_string(count));
+}
+
+double field_value(const Model& model, int body_index, const BodyState& body, const std::string& name, std::int64_t p,
+                   int c) {
+  const Material& material = model.material_of(body_index);
+  const double mass = body.position[4 * p + 3];
+  if (name == "position") return body.position[4 * p + c];
+  if (name == "velocity") return body.velocity[4 * p + c];
+  if (name == "mass") return mass;
+  if (name == "volume") return mass / material.density * body.volume_ratio[p];
+  if (name == "stress") return body.stress[c][p];
+  const double pressure = -(body.stress[0][p] + body.stress[1][p] + body.stress[2][p]) / 3;
+  if (name == "pressure") return pressure;
+  if (name == "von_mises") {
+    double squared = 0;
+    for (int i = 0; i < 3; ++i) squared += std::pow(body.stress[i][p] + pressure, 2);
+    for (int i = 3; i < 6; ++i) squared += 2 * std::pow(body.stress[i][p], 2);
+    return std::sqrt(1.5 * squared);
+  }
+  if (name == "energy") return mass / material.density * body.energy[p];
+  if (name == "plastic_strain") return body.plastic_strain[p];
+  if (name == "temperature") return body.temperature[p];
+  if (name == "failed") return body.plastic_strain[p] >= material.failure_strain ? 1 : 0;
+  if (name == "number") return body.number[p];
+  return body.deformation[c][p];
+}
+
+// ------------------------------------------------------------------------------------------------------ save and load
+
+class CallbackWriter : public Archive {
+ public:
+  explicit CallbackWriter(const ogive_writer& writer) : writer_(writer) {}
+  bool loading() const override { return false; }
+  void put(const std::string& name, ElementType type, std::int64_t count, const void* data) override {
+    static const std::uint64_t nothing = 0;
+    const ogive_status status =
+        writer_.put(writer_.user, name.c_str(), static_cast<std::int32_t>(type), count, count > 0 ? data : &nothing);
+    if (status != OGIVE_OK)
+      throw Error(static_cast<ErrorKind>(status), "the writer refused \"" + name + "\": " + ogive_status_name(status));
+  }
+
+ protected:
+  std::int64_t find(const std::string&, ElementType) override { return -1; }
+  void get(const std::string&, std::int64_t, void*) override {}
+
+ private:
+  const ogive_writer& writer_;
+};
+
+class CallbackReader : public Archive {
+ public:
+  explicit CallbackReader(const ogive_reader& reader) : reader_(reader) {}
+  bool loading() const override { return true; }
+  std::int64_t find(const std::string& name, ElementType type) override {
+    std::int32_t found_type = 0;
+    std::int64_t count = -1;
+    check(reader_.find(reader_.user, name.c_str(), &found_type, &count), name);
+    if (found_type != static_cast<std::int32_t>(type))
+      throw Error(ErrorKind::Format, name + ": expected element type " + std::to_string(static_cast<int>(type)) +
+                                         ", found " + std::to_string(found_type));
+    if (count < 0) throw Error(ErrorKind::Format, name + ": found a negative count");
+    return count;
+  }
+  void get(const std::string& name, std::int64_t count, void* data) override {
+    if (count > 0) check(reader_.get(reader_.user, name.c_str(), count, data), name);
+  }
+
+ protected:
+  void put(const std::string&, ElementType, std::int64_t, const void*) override {}
+
+ private:
+  static void check(ogive_status status, const std::string& name) {
+    if (status != OGIVE_OK)
+      throw Error(static_cast<ErrorKind>(status), "\"" + name + "\" cannot be read: " + ogive_status_name(status));
+  }
+  const ogive_reader& reader_;
+};
+
+constexpr std::int32_t save_version = 1;
+constexpr std::int64_t largest_attachment = std::int64_t{1} << 31;
+
+void exchange_attachments(ogive_world* world, Archive& archive) {
+  std::string names;
+  for (const auto& entry : world->attachments) names += entry.first + "\n";
+  archive.value("attachment_names", names);
+  if (archive.loading()) {
+    std::size_t begin = 0;
+    for (std::size_t end; (end = names.find('\n', begin)) != std::string::npos; begin = end + 1)
+      world->attachments[names.substr(begin, end - begin)];
+  }
+  for (auto& [name, data] : world->attachments) archive.resizable("attachment/" + name, data, largest_attachment);
+}
+
+}  // namespace
+
+// ------------------------------------------------------------------------------------------------------------ interface
+
+#define OGIVE_TEXT_OF(x) #x
+#define OGIVE_TEXT(x) OGIVE_TEXT_OF(x)
+
+const char* ogive_version(void) {
+  return OGIVE_TEXT(OGIVE_VERSION_MAJOR) "." OGIVE_TEXT(OGIVE_VERSION_MINOR) "." OGIVE_TEXT(OGIVE_VERSION_PATCH);
+}
+
+const char* ogive_status_name(ogive_status status) {
+  switch (status) {
+    case OGIVE_OK: return "ok";
+    case OGIVE_ERROR_ARGUMENT: return "bad argument";
+    case OGIVE_ERROR_STATE: return "call in the wrong order";
+    case OGIVE_ERROR_MEMORY: return "out of memory";
+    case OGIVE_ERROR_NUMERICAL: return "numerical breakdown";
+    case OGIVE_ERROR_FILE: return "file error";
+    case OGIVE_ERROR_FORMAT: return "damaged or foreign file";
+    case OGIVE_ERROR_INTERNAL: return "internal error";
+    default: return "unknown status";
+  }
+}
+
+ogive_status ogive_world_create(ogive_world** world) {
+  if (!world) return OGIVE_ERROR_ARGUMENT;
+  *world = new (std::nothrow) ogive_world;
+  return *world ? OGIVE_OK : OGIVE_ERROR_MEMORY;
+}
+
+void ogive_world_destroy(ogive_world* world) { delete world; }
+
+const char* ogive_world_message(const ogive_world* world) { return world ? world->message.c_str() : ""; }
+
+ogive_status ogive_world_report(ogive_world* world, ogive_status status, const char* message) {
+  if (!world) return OGIVE_ERROR_ARGUMENT;
+  set_message(world, message ? message : "");
+  return status;
+}
+
+void ogive_grid_def_init(ogive_grid_def* def, size_t size) { initialise(def, size, ogive_grid_def{}); }
+
+ogive_status ogive_world_set_grid(ogive_world* world, const ogive_grid_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_world_set_grid");
+    if (!world->model.bodies.empty())
+      throw Error(ErrorKind::State, "ogive_world_set_grid: must come before the bodies, which it cuts");
+    const ogive_grid_def full = complete(def, "def", ogive_grid_def_init);
+    Model trial;
+    trial.grid.cell_size = full.cell_size;
+    trial.grid.domain_min = vector_of(full.domain_min);
+    trial.grid.domain_max = vector_of(full.domain_max);
+    for (int i = 0; i < 6; ++i) trial.grid.face[i] = static_cast<Face>(full.face[i]);
+    trial.validate_grid();
+    world->model.grid = trial.grid;
+    world->has_grid = true;
+  });
+}
+
+void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
+  ogive_numerics_def defaults{};
+  const Numerics numerics;
+  defaults.shape_function = static_cast<std::int32_t>(numerics.shape_function);
+  defaults.time_step_factor = numerics.time_step_factor;
+  defaults.maximum_time_step = numerics.maximum_time_step;
+  defaults.threads = 1;
+  initialise(def, size, defaults);
+}
+
+ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_world_set_numerics");
+    const ogive_numerics_def full = complete(def, "def", ogive_numerics_def_init);
+    Model trial;
+    trial.numerics.shape_function = static_cast<ShapeFunction>(full.shape_function);
+    trial.numerics.time_step_factor = full.time_step_factor;
+    trial.numerics.maximum_time_step = full.maximum_time_step;
+    trial.numerics.gravity = vector_of(full.gravity);
+    trial.validate_numerics();
+    set_threads(world, full.threads);
+    world->model.numerics = trial.numerics;
+  });
+}
+
+ogive_status ogive_world_set_threads(ogive_world* world, int32_t threads) {
+  return guarded(world, [&] { set_threads(world, threads); });
+}
+
+void ogive_clamp_def_init(ogive_clamp_def* def, size_t size) {
+  ogive_clamp_def defaults{};
+  defaults.body.index = -1;
+  defaults.axes = 7;
+  initialise(def, size, defaults);
+}
+
+ogive_status ogive_clamp_add(ogive_world* world, const ogive_clamp_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_clamp_add");
+    const ogive_clamp_def full = complete(def, "def", ogive_clamp_def_init);
+    Clamp clamp;
+    clamp.region = static_cast<Region>(full.region);
+    clamp.a = vector_of(full.a);
+    clamp.b = vector_of(full.b);
+    clamp.radius = full.radius;
+    clamp.body = full.body.index;
+    clamp.axes = full.axes;
+    world->model.validate_clamp(clamp);
+    world->model.clamps.push_back(clamp);
+  });
+}
+
+void ogive_material_def_init(ogive_material_def* def, size_t size) {
+  const Material defaults;
+  ogive_material_def full{};
+  full.hardening_exponent = defaults.hardening_exponent;
+  full.reference_strain_rate = defaults.reference_strain_rate;
+  full.room_temperature = defaults.room_temperature;
+  full.taylor_quinney = defaults.taylor_quinney;
+  initialise(def, size, full);
+}
+
+ogive_status ogive_material_add(ogive_world* world, const char* name, const ogive_material_def* def,
+                                ogive_material_id* id) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_material_add");
+    Material m;
+    m.name = checked_name(name, "material");
+    const ogive_material_def d = complete(def, "def", ogive_material_def_init);
+    for (const Material& other : world->model.materials)
+      if (other.name == m.name) refuse("material \"" + m.name + "\": name is already taken");
+    m.strength = static_cast<Strength>(d.strength);
+    m.eos = static_cast<EquationOfState>(d.eos);
+    m.failure = static_cast<Failure>(d.failure);
+    m.density = d.density;
+    m.youngs_modulus = d.youngs_modulus;
+    m.poisson_ratio = d.poisson_ratio;
+    m.bulk_modulus = d.bulk_modulus;
+    m.shear_modulus = d.shear_modulus;
+    m.yield_stress = d.yield_stress;
+    m.hardening_modulus = d.hardening_modulus;
+    m.hardening_exponent = d.hardening_exponent;
+    m.rate_coefficient = d.rate_coefficient;
+    m.reference_strain_rate = d.reference_strain_rate;
+    m.thermal_exponent = d.thermal_exponent;
+    m.melt_temperature = d.melt_temperature;
+    m.room_temperature = d.room_temperature;
+    m.specific_heat = d.specific_heat;
+    m.taylor_quinney = d.taylor_quinney;
+    m.eos_sound_speed = d.eos_sound_speed;
+    m.eos_slope = d.eos_slope;
+    m.gruneisen = d.gruneisen;
+    m.failure_strain = d.failure_strain;
+    m.viscosity_linear = d.viscosity_linear;
+    m.viscosity_quadratic = d.viscosity_quadratic;
+    try {
+      m.validate();
+    } catch (const Error& error) {
+      throw Error(error.kind(), "material \"" + m.name + "\": " + error.what());
+    }
+    world->model.materials.push_back(std::move(m));
+    if (id) id->index = static_cast<std::int32_t>(world->model.materials.size()) - 1;
+  });
+}
+
+void ogive_body_def_init(ogive_body_def* def, size_t size) {
+  ogive_body_def defaults{};
+  defaults.material.index = -1;
+  initialise(def, size, defaults);
+}
+
+ogive_status ogive_body_add_particles(ogive_world* world, const char* name, const ogive_body_def* def, int64_t count,
+                                      const double* xyz, const double* volume, ogive_body_id* id) {
+  return guarded(world, [&] {
+    const ogive_body_id added = add_particles(world, name, def, count, xyz, volume);
+    if (id) *id = added;
+  });
+}
+
+void ogive_solid_def_init(ogive_solid_def* def, size_t size) {
+  ogive_solid_def defaults{};
+  defaults.axis[2] = 1;
+  initialise(def, size, defaults);
+}
+
+ogive_status ogive_body_add_solid(ogive_world* world, const char* name, const ogive_body_def* def,
+                                  const ogive_solid_def* solid, ogive_body_id* id) {
+  return guarded(world, [&] {
+    const ParticleCloud cloud = fill_solid(solid_of(solid));
+    const ogive_body_id added = add_particles(world, name, def, static_cast<std::int64_t>(cloud.volume.size()),
+                                              cloud.xyz.data(), cloud.volume.data());
+    if (id) *id = added;
+  });
+}
+
+ogive_status ogive_solid_particles(ogive_world* world, const ogive_solid_def* solid, int64_t* count, double* xyz,
+                                   double* volume) {
+  return guarded(world, [&] {
+    require_pointer(count, "count");
+    const ParticleCloud cloud = fill_solid(solid_of(solid));
+    const std::int64_t found = static_cast<std::int64_t>(cloud.volume.size());
+    if (xyz || volume) {
+      if (*count < found)
+        refuse("count: must give room for " + std::to_string(found) + " particles, got " + std::to_string(*count));
+      if (xyz) std::copy(cloud.xyz.begin(), cloud.xyz.end(), xyz);
+      if (volume) std::copy(cloud.volume.begin(), cloud.volume.end(), volume);
+    }
+    *count = found;
+  });
+}
+
+void ogive_contact_def_init(ogive_contact_def* def, size_t size) {
+  const ContactRule rule;
+  ogive_contact_def defaults{};
+  defaults.method = static_cast<std::int32_t>(Model().contact_method);
+  defaults.normal = static_cast<std::int32_t>(rule.normal);
+  defaults.master.index = -1;
+  defaults.detection = static_cast<std::int32_t>(rule.detection);
+  defaults.gap_offset = rule.gap_offset;
+  initialise(def, size, defaults);
+}
+
+static ContactRule rule_from(const ogive_world* world, const ogive_contact_def& full) {
+  ContactRule rule;
+  rule.normal = static_cast<NormalRule>(full.normal);
+  require_body_or_none(world, full.master, "master");
+  rule.master = full.master.index;
+  rule.friction = full.friction;
+  rule.detection = static_cast<Detection>(full.detection);
+  rule.gap_offset = full.gap_offset;
+  world->model.validate_contact(rule, "contact ");
+  return rule;
+}
+
+ogive_status ogive_world_set_contact(ogive_world* world, const ogive_contact_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_world_set_contact");
+    const ogive_contact_def full = complete(def, "def", ogive_contact_def_init);
+    if (full.method < 0 || full.method > 2) refuse("contact method: must be 0..2, got " + std::to_string(full.method));
+    const ContactRule rule = rule_from(world, full);
+    world->model.contact_method = static_cast<ContactMethod>(full.method);
+    world->model.contact = rule;
+  });
+}
+
+ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id a, ogive_body_id b, const ogive_contact_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_contact_set_pair");
+    body_of(world, a);
+    body_of(world, b);
+    if (a.index == b.index) refuse("contact pair: must be two bodies, got body " + std::to_string(a.index) + " twice");
+    PairRule pair;
+    pair.a = a.index;
+    pair.b = b.index;
+    pair.rule = rule_from(world, complete(def, "def", ogive_contact_def_init));
+    auto& pairs = world->model.pairs;
+    std::erase_if(pairs, [&](const PairRule& old) {
+      return (old.a == pair.a && old.b == pair.b) || (old.a == pair.b && old.b == pair.a);
+    });
+    pairs.push_back(pair);
+  });
+}
+
+void ogive_stop_def_init(ogive_stop_def* def, size_t size) {
+  ogive_stop_def defaults{};
+  defaults.body.index = -1;
+  defaults.stop_when_stopped = defaults.stop_when_out = 1;
+  initialise(def, size, defaults);
+}
+
+ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_world_set_stop");
+    const ogive_stop_def full = complete(def, "def", ogive_stop_def_init);
+    require_body_or_none(world, full.body, "stop body");
+    if (!(full.settle_window >= 0 && std::isfinite(full.settle_window)))
+      refuse("settle_window: must be >= 0 and finite, got " + std::to_string(full.settle_window));
+    if (full.settle_window > 0 && !(full.settle_tolerance > 0 && std::isfinite(full.settle_tolerance)))
+      refuse("settle_tolerance: must be > 0 and finite, got " + std::to_string(full.settle_tolerance));
+    Stop stop;
+    stop.body = full.body.index;
+    stop.settle_window = full.settle_window;
+    stop.settle_tolerance = full.settle_tolerance;
+    stop.when_stopped = full.stop_when_stopped != 0;
+    stop.when_out = full.stop_when_out != 0;
+    world->model.stop = stop;
+  });
+}
+
+ogive_status ogive_world_prepare(ogive_world* world) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_world_prepare");
+    if (!world->has_grid) throw Error(ErrorKind::State, "ogive_world_prepare: the grid must be set (ogive_world_set_grid)");
+    world->model.validate_all();
+    refuse_overlap(world->model, world->state);
+    prepare_state(world->model, world->state, world->workspace);
+    world->state.ledger.initial_total = total_energy(world->model, world->state);
+    check_stop(world->model, world->state);
+    world->stage = Stage::Ready;
+  });
+}
+
+ogive_status ogive_world_plan(const ogive_world* world, char* text, size_t capacity, size_t* needed) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_world_plan");
+    copy_text(describe_plan(world->model, world->state, world->workspace), text, capacity, needed);
+  });
+}
+
+ogive_status ogive_world_stable_time_step(const ogive_world* world, double* dt) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_world_stable_time_step");
+    require_pointer(dt, "dt");
+    *dt = world->state.stable_time_step;
+  });
+}
+
+static void step_or_break(ogive_world* world, double dt) {
+  try {
+    advance_one_step(world->model, world->state, world->workspace, dt);
+    // The stop condition looks at every tenth step: one pass over its body costs next to nothing then.
+    if (world->state.steps % 10 == 0) check_stop(world->model, world->state);
+  } catch (...) {
+    world->stage = Stage::Broken;
+    throw;
+  }
+}
+
+ogive_status ogive_world_step(ogive_world* world, double dt) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Ready, "ogive_world_step");
+    const double stable = world->state.stable_time_step;
+    if (!(dt >= 0 && dt <= stable * (1 + 1e-12)))
+      refuse("dt: must be 0..stable time step = " + std::to_string(stable) + ", got " + std::to_string(dt));
+    if (world->state.particle_count() == 0) throw Error(ErrorKind::State, "ogive_world_step: no particle is left");
+    step_or_break(world, dt > 0 ? dt : stable);
+  });
+}
+
+ogive_status ogive_world_advance(ogive_world* world, double time, int64_t max_steps, ogive_step_callback callback,
+                                 void* user) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Ready, "ogive_world_advance");
+    if (!(time >= world->state.time && std::isfinite(time)))
+      refuse("time: must be finite and at least the present time " + std::to_string(world->state.time) + ", got " +
+             std::to_string(time));
+    if (max_steps < 0) refuse("max_steps: must be >= 0, got " + std::to_string(max_steps));
+    for (std::int64_t n = 0; (max_steps == 0 || n < max_steps) && world->state.time < time; ++n) {
+      if (world->state.stop.reason != 0 || world->state.particle_count() == 0) break;
+      const double left = time - world->state.time;
+      const bool last = world->state.stable_time_step >= left;
+      step_or_break(world, last ? left : world->state.stable_time_step);
+      if (last) world->state.time = time;
+      if (callback && callback(world, user) != 0) break;
+    }
+  });
+}
+
+ogive_status ogive_world_progress(const ogive_world* world, ogive_progress* progress) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_world_progress");
+    ogive_progress full{};
+    full.stop = world->state.stop.reason;
+    full.time = world->state.time;
+    full.last_time_step = world->state.last_time_step;
+    full.steps = world->state.steps;
+    full.particles = world->state.particle_count();
+    full.particle_steps = world->state.particle_steps;
+    full.memory_bytes = world->state.memory_bytes() + world->workspace.memory_bytes();
+    deliver(full, progress, "progress");
+  });
+}
+
+ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_world_ledger");
+    const State& state = world->state;
+    ogive_ledger full{};
+    full.time = state.time;
+    for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
+      const BodyAudit audit = audit_body(world->model, state, b);
+      const BodyTotals& totals = state.bodies[b].totals;
+      full.mass += audit.mass;
+      full.kinetic += audit.kinetic;
+      full.internal += audit.internal;
+      full.left_domain_mass += totals.left_mass;
+      full.left_domain_energy += totals.left_energy;
+      full.failure_loss += totals.failure_loss;
+      full.plastic_dissipation += totals.plastic_dissipation;
+      full.viscous_dissipation += totals.viscous_dissipation;
+      for (int c = 0; c < 3; ++c) {
+        full.momentum[c] += audit.momentum[c];
+        full.left_domain_momentum[c] += totals.left_momentum[c];
+      }
+      full.maximum_speed = std::max(full.maximum_speed, totals.maximum_speed);
+      full.maximum_speed_ever = std::max(full.maximum_speed_ever, totals.maximum_speed_ever);
+    }
+    for (int c = 0; c < 3; ++c) {
+      full.boundary_impulse[c] = state.ledger.boundary_impulse[c];
+      full.external_impulse[c] = state.ledger.external_impulse[c];
+    }
+    full.friction_dissipation = state.ledger.friction_dissipation;
+    full.contact_work = state.ledger.contact_work;
+    full.boundary_work = state.ledger.boundary_work;
+    full.external_work = state.ledger.external_work;
+    full.initial_total = state.ledger.initial_total;
+    full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation -
+                 full.external_work;
+    full.residual = full.total - full.initial_total;
+    full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
+    deliver(full, ledger, "ledger");
+  });
+}
+
+int32_t ogive_body_count(const ogive_world* world) {
+  return world ? static_cast<std::int32_t>(world->model.bodies.size()) : 0;
+}
+
+const char* ogive_body_name(const ogive_world* world, ogive_body_id body) {
+  if (!world || body.index < 0 || body.index >= ogive_body_count(world)) return nullptr;
+  return world->model.bodies[body.index].name.c_str();
+}
+
+ogive_status ogive_body_find(const ogive_world* world, const char* name, ogive_body_id* body) {
+  return guarded(world, [&] {
+    require_pointer(name, "name");
+    require_pointer(body, "body");
+    for (std::int32_t b = 0; b < ogive_body_count(world); ++b)
+      if (world->model.bodies[b].name == name) {
+        body->index = b;
+        return;
+      }
+    refuse("body: none is named \"" + std::string(name) + "\"");
+  });
+}
+
+ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id id, ogive_body_result* result) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_body_result_get");
+    const BodyState& body = body_of(world, id);
+    const BodyAudit audit = audit_body(world->model, world->state, id.index);
+    const BodyTotals& totals = body.totals;
+    ogive_body_result full{};
+    full.particles = body.particles;
+    full.failed_particles = totals.failed_particles;
+    full.left_domain = totals.left_particles;
+    full.mass = audit.mass;
+    full.failed_mass = totals.failed_mass;
+    full.left_domain_mass = totals.left_mass;
+    full.first_failure_time = totals.first_failure_time;
+    full.failure_loss = totals.failure_loss;
+    full.kinetic = audit.kinetic;
+    full.internal = audit.internal;
+    for (int c = 0; c < 3; ++c) {
+      full.momentum[c] = audit.momentum[c];
+      full.centre[c] = audit.mass > 0 ? audit.first_moment[c] / audit.mass : 0;
+      full.velocity[c] = audit.mass > 0 ? audit.momentum[c] / audit.mass : 0;
+      full.speed += full.velocity[c] * full.velocity[c];
+      full.initial_speed += totals.initial_velocity[c] * totals.initial_velocity[c];
+      full.contact_force[c] = totals.contact_force[c];
+      full.lower[c] = audit.lower[c];
+      full.upper[c] = audit.upper[c];
+    }
+    full.speed = std::sqrt(full.speed);
+    full.initial_speed = std::sqrt(full.initial_speed);
+    full.maximum_plastic_strain = audit.maximum_plastic_strain;
+    full.maximum_temperature = audit.maximum_temperature;
+    deliver(full, result, "result");
+  });
+}
+
+int32_t ogive_field_count(const ogive_world* world, ogive_body_id body) {
+  if (!ogive_body_name(world, body)) return 0;
+  std::int32_t count = 0;
+  for (const Field& field : all_fields)
+    if (has_field(world->model.material_of(body.index), field)) ++count;
+  return count;
+}
+
+const char* ogive_field_name(const ogive_world* world, ogive_body_id body, int32_t index, int32_t* components) {
+  if (!ogive_body_name(world, body) || index < 0) return nullptr;
+  for (const Field& field : all_fields)
+    if (has_field(world->model.material_of(body.index), field) && index-- == 0) {
+      if (components) *components = field.components;
+      return field.name;
+    }
+  return nullptr;
+}
+
+ogive_status ogive_field_get(const ogive_world* world, ogive_body_id id, const char* name, double* values,
+                             int64_t count) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_field_get");
+    const Field& field = field_named(world, id, name);
+    const BodyState& body = body_of(world, id);
+    check_count(body, field, count);
+    if (count > 0) require_pointer(values, "values");
+    const std::string field_name(field.name);
+    for (const std::int64_t p : by_number(body))
+      for (int c = 0; c < field.components; ++c) *values++ = field_value(world->model, id.index, body, field_name, p, c);
+  });
+}
+
+ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* name, const double* values,
+                             int64_t count) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_field_set");
+    const Field& field = field_named(world, id, name);
+    if (!field.settable) refuse("field \"" + std::string(name) + "\": cannot be set");
+    BodyState& body = const_cast<BodyState&>(body_of(world, id));
+    check_count(body, field, count);
+    if (count > 0) require_pointer(values, "values");
+    const Material& material = world->model.material_of(id.index);
+    const std::string field_name(field.name);
+    for (std::int64_t i = 0; i < count; ++i) {
+      const bool negative = values[i] < 0 && (field_name == "plastic_strain" || field_name == "temperature");
+      if (!std::isfinite(values[i]) || negative)
+        refuse("values[" + std::to_string(i) + "]: must be finite" + (negative ? " and >= 0" : "") + ", got " +
+               std::to_string(values[i]));
+    }
+    double fastest = 0;
+    const std::vector<std::int64_t> place = by_number(body);
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      const std::int64_t p = place[i];
+      const double* v = values + i * field.components;
+      if (field_name == "velocity") {
+        for (int c = 0; c < 3; ++c) body.velocity[4 * p + c] = v[c];
+        fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      } else if (field_name == "stress") {
+        for (int c = 0; c < 6; ++c) body.stress[c][p] = v[c];
+      } else if (field_name == "energy") {
+        body.energy[p] = *v * material.density / body.position[4 * p + 3];
+      } else {
+        (field_name == "plastic_strain" ? body.plastic_strain : body.temperature)[p] = *v;
+      }
+      if (field_name == "plastic_strain" || field_name == "temperature") {
+        double yield = material.yield_stress +
+                       material.hardening_modulus * std::pow(body.plastic_strain[p], material.hardening_exponent);
+        if (material.thermal()) {
+          const double t = (body.temperature[p] - material.room_temperature) /
+                           (material.melt_temperature - material.room_temperature);
+          yield *= 1 - std::pow(std::clamp(t, 0.0, 1.0), material.thermal_exponent);
+        }
+        body.yield_stress[p] = yield;
+      }
+    }
+    if (field_name == "velocity") {
+      // The next step must be safe for the new speed as well.
+      const double dt = world->state.stable_time_step;
+      const double wave = world->model.numerics.time_step_factor * world->model.grid.cell_size / dt;
+      world->state.stable_time_step =
+          world->model.numerics.time_step_factor * world->model.grid.cell_size / (wave + std::sqrt(fastest));
+    }
+  });
+}
+
+ogive_status ogive_world_attach(ogive_world* world, const char* name, const void* data, int64_t size) {
+  return guarded(world, [&] {
+    const std::string key = checked_name(name, "attachment");
+    if (key.find('\n') != std::string::npos) refuse("attachment name: must be one line");
+    if (size < 0 || size > largest_attachment)
+      refuse("attachment size: must be 0..2^31, got " + std::to_string(size));
+    if (size == 0) {
+      world->attachments.erase(key);
+      return;
+    }
+    require_memory(data, "data");
+    const std::uint8_t* bytes = static_cast<const std::uint8_t*>(data);
+    world->attachments[key].assign(bytes, bytes + size);
+  });
+}
+
+ogive_status ogive_world_attachment(const ogive_world* world, const char* name, const void** data, int64_t* size) {
+  return guarded(world, [&] {
+    require_pointer(name, "name");
+    require_memory(data, "data");
+    require_pointer(size, "size");
+    const auto found = world->attachments.find(name);
+    if (found == world->attachments.end()) refuse("attachment: none is named \"" + std::string(name) + "\"");
+    *data = found->second.data();
+    *size = static_cast<std::int64_t>(found->second.size());
+  });
+}
+
+ogive_status ogive_world_save(const ogive_world* world, const ogive_writer* writer) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_world_save");
+    if (!require_pointer(writer, "writer").put) refuse("writer.put: must not be NULL");
+    // exchange() both reads and writes; a writing archive changes nothing.
+    ogive_world* self = const_cast<ogive_world*>(world);
+    CallbackWriter archive(*writer);
+    std::int32_t version = save_version;
+    archive.value("version", version);
+    self->model.exchange(archive);
+    self->state.exchange(self->model, archive);
+    exchange_attachments(self, archive);
+  });
+}
+
+ogive_status ogive_world_load(ogive_world* world, const ogive_reader* reader) {
+  return guarded(world, [&] {
+    if (world->stage != Stage::Building || world->has_grid || !world->model.materials.empty())
+      throw Error(ErrorKind::State, "ogive_world_load: the world must be fresh from ogive_world_create");
+    require_pointer(reader, "reader");
+    if (!reader->find || !reader->get) refuse("reader.find and reader.get: must not be NULL");
+    ogive_world fresh;
+    fresh.workspace.threads = world->workspace.threads;
+    CallbackReader archive(*reader);
+    std::int32_t version = 0;
+    archive.value("version", version);
+    if (version < 1 || version > save_version)
+      throw Error(ErrorKind::Format, "version: this library reads 1.." + std::to_string(save_version) + ", found " +
+                                         std::to_string(version));
+    fresh.model.exchange(archive);
+    fresh.state.exchange(fresh.model, archive);
+    exchange_attachments(&fresh, archive);
+    prepare_state(fresh.model, fresh.state, fresh.workspace);
+    fresh.has_grid = true;
+    fresh.stage = Stage::Ready;
+    std::swap(*world, fresh);
+  });
+}

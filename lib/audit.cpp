@@ -1,0 +1,105 @@
+// Sums over particles and the stop condition.
+#include "audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ogive {
+
+BodyAudit audit_body(const Model& model, const State& state, int index) {
+  const BodyState& body = state.bodies[index];
+  const double density = model.material_of(index).density;
+  BodyAudit audit;
+  audit.lower.fill(body.particles > 0 ? std::numeric_limits<double>::infinity() : 0);
+  audit.upper.fill(body.particles > 0 ? -std::numeric_limits<double>::infinity() : 0);
+  // Sums by group first: fewer additions in a row, hence less round-off.
+  for (const Group& group : body.groups) {
+    BodyAudit part;
+    for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+      const double* x = &body.position[4 * p];
+      const double* v = &body.velocity[4 * p];
+      const double mass = x[3];
+      part.mass += mass;
+      part.kinetic += 0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      part.internal += mass / density * body.energy[p];
+      for (int c = 0; c < 3; ++c) {
+        part.momentum[c] += mass * v[c];
+        part.first_moment[c] += mass * x[c];
+        audit.lower[c] = std::min(audit.lower[c], x[c]);
+        audit.upper[c] = std::max(audit.upper[c], x[c]);
+      }
+      if (!body.plastic_strain.empty())
+        audit.maximum_plastic_strain = std::max(audit.maximum_plastic_strain, body.plastic_strain[p]);
+      if (!body.temperature.empty())
+        audit.maximum_temperature = std::max(audit.maximum_temperature, body.temperature[p]);
+    }
+    audit.mass += part.mass;
+    audit.kinetic += part.kinetic;
+    audit.internal += part.internal;
+    for (int c = 0; c < 3; ++c) {
+      audit.momentum[c] += part.momentum[c];
+      audit.first_moment[c] += part.first_moment[c];
+    }
+  }
+  return audit;
+}
+
+double total_energy(const Model& model, const State& state) {
+  double total = state.ledger.friction_dissipation - state.ledger.external_work;
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
+    const BodyAudit audit = audit_body(model, state, b);
+    const BodyTotals& totals = state.bodies[b].totals;
+    total += audit.kinetic + audit.internal + totals.failure_loss + totals.left_energy;
+  }
+  return total;
+}
+
+Vector3 body_momentum(const BodyState& body) {
+  Vector3 momentum{};
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin; p < group.begin + group.count; ++p)
+      for (int c = 0; c < 3; ++c) momentum[c] += body.position[4 * p + 3] * body.velocity[4 * p + c];
+  return momentum;
+}
+
+void check_stop(const Model& model, State& state) {
+  const Stop& stop = model.stop;
+  if (stop.body < 0 || state.stop.reason != 0) return;
+  const BodyState& body = state.bodies[stop.body];
+  if (body.particles == 0) {
+    if (stop.when_out) state.stop.reason = 3;
+    return;
+  }
+  double mass = 0;
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) mass += body.position[4 * p + 3];
+  const Vector3 momentum = body_momentum(body);
+  const Vector3& initial = body.totals.initial_velocity;
+  double speed = 0, along = 0, initial_speed = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double v = momentum[c] / mass;
+    speed += v * v;
+    along += v * initial[c];
+    initial_speed += initial[c] * initial[c];
+  }
+  speed = std::sqrt(speed);
+  initial_speed = std::sqrt(initial_speed);
+  if (stop.when_stopped && initial_speed > 0 && along <= 0) {
+    state.stop.reason = 2;
+    return;
+  }
+  if (stop.settle_window <= 0) return;
+  if (!state.stop.slowed) {
+    state.stop.slowed = std::abs(initial_speed - speed) > stop.settle_tolerance;
+    state.stop.reference_time = state.time;
+    state.stop.reference_speed = speed;
+  } else if (std::abs(speed - state.stop.reference_speed) > stop.settle_tolerance) {
+    state.stop.reference_time = state.time;
+    state.stop.reference_speed = speed;
+  } else if (state.time - state.stop.reference_time >= stop.settle_window) {
+    state.stop.reason = 1;
+  }
+}
+
+}  // namespace ogive

@@ -1,0 +1,27 @@
+// The ledger: mass, momentum and energy of particles now, together with the running sums of the state.
+#pragma once
+
+#include "model.hpp"
+#include "state.hpp"
+
+namespace ogive {
+
+// Sums over a body's particles, always in the same order.
+struct BodyAudit {
+  double mass = 0, kinetic = 0, internal = 0;
+  Vector3 momentum{}, first_moment{};
+  Vector3 lower{}, upper{};
+  double maximum_plastic_strain = 0, maximum_temperature = 0;
+};
+BodyAudit audit_body(const Model& model, const State& state, int body);
+
+// kinetic + internal + failure loss + energy that left + friction heat - external work, of all bodies.
+double total_energy(const Model& model, const State& state);
+
+// Momentum of the centre of mass alone, for the stop condition.
+Vector3 body_momentum(const BodyState& body);
+
+// Renews the stop condition's memory and sets state.stop.reason.
+void check_stop(const Model& model, State& state);
+
+}  // namespace ogive

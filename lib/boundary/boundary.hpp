@@ -1,0 +1,29 @@
+// Symmetry and fixed faces as mirrors, and clamps.
+//
+// At a symmetry face the material beyond is the mirror image of what is modelled, moving as the image moves. What the
+// particles give to a node beyond the face (a ghost) is therefore what the image would give to the mirrored node inside:
+// it is folded there, normal components reversed, and the ghost moves as that node's mirror image. Nodes on the face have
+// no normal velocity, normal force or normal gradient. A half model is then the full model to round-off, for every shape
+// function. A fixed face is the same with all components reversed: velocity zero on the face.
+#pragma once
+
+#include "grid.hpp"
+#include "model.hpp"
+#include "state.hpp"
+
+namespace ogive {
+
+// After mapping, node records hold {momentum, mass | -} and contact records their sums: folds ghosts into images.
+void fold_momentum(Workspace& workspace);
+// Gives ghosts the velocity of their images (records hold velocities).
+void unfold_velocity(Workspace& workspace);
+// After the stress update: folds forces, and books the normal impulse of the faces before contact.
+void fold_force(State& state, Workspace& workspace, double dt);
+// Trial velocities on the faces have no held components (gravity would give them some).
+void hold_faces(State& state, Workspace& workspace);
+// After the final velocities (records {velocity at the beginning, mass | final velocity}): ghosts move as mirror images.
+void unfold_motion(State& state, Workspace& workspace);
+// Holds clamped nodes (same records): the final velocity is zero, and so the acceleration that particles see is -v / dt.
+void apply_clamps(State& state, Workspace& workspace);
+
+}  // namespace ogive

@@ -1,0 +1,493 @@
+// Binning of particles into groups and linking of groups to the sparse grid.
+#include "grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "error.hpp"
+
+namespace ogive {
+namespace {
+
+// Cells that a particle may drift out of its group's cells. Half a cell is what the tile holds; the rest keeps a particle
+// that sits exactly there from being rounded to a node outside.
+constexpr double drift_limit = 0.49;
+
+// Block coordinates and field (or nothing) in one key; Model::validate_grid keeps blocks within +-32000.
+std::uint64_t block_key(const std::array<std::int32_t, 3>& block, std::int32_t field) {
+  const auto part = [](std::int32_t i) { return static_cast<std::uint64_t>(i + 32768) & 0xffff; };
+  return part(block[2]) << 48 | part(block[1]) << 32 | part(block[0]) << 16 | static_cast<std::uint64_t>(field);
+}
+
+// Open-addressing table from block keys to indices; much faster than std::unordered_map here and freed in one go.
+class BlockTable {
+ public:
+  explicit BlockTable(std::size_t expected) {
+    std::size_t size = 64;
+    while (size < 2 * expected) size *= 2;
+    entries_.assign(size, {empty, -1});
+  }
+  // Index of the key, `next` if it is new.
+  std::int32_t insert(std::uint64_t key, std::int32_t next) {
+    if (2 * (used_ + 1) > entries_.size()) grow();
+    Entry& entry = entries_[place(key)];
+    if (entry.key == empty) {
+      entry = {key, next};
+      ++used_;
+    }
+    return entry.index;
+  }
+  std::int32_t find(std::uint64_t key) const { return entries_[place(key)].index; }
+
+ private:
+  struct Entry {
+    std::uint64_t key;
+    std::int32_t index;
+  };
+  static constexpr std::uint64_t empty = ~std::uint64_t{0};
+  std::size_t place(std::uint64_t key) const {
+    std::uint64_t hash = key * 0x9e3779b97f4a7c15ull;
+    hash ^= hash >> 32;
+    std::size_t i = hash & (entries_.size() - 1);
+    while (entries_[i].key != empty && entries_[i].key != key) i = (i + 1) & (entries_.size() - 1);
+    return i;
+  }
+  void grow() {
+    std::vector<Entry> old(2 * entries_.size(), {empty, -1});
+    old.swap(entries_);
+    for (const Entry& entry : old)
+      if (entry.key != empty) entries_[place(entry.key)] = entry;
+  }
+  std::vector<Entry> entries_;
+  std::size_t used_ = 0;
+};
+
+std::int32_t floor_div4(std::int32_t i) { return i >> 2; }
+
+// True if the particle is to be removed; throws where it cannot be where it is.
+bool has_left(const Model& model, const State& state, const std::string& body, std::int32_t number, const double* x) {
+  const Grid& grid = model.grid;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(x[axis]))
+      throw Error(ErrorKind::Numerical, "body \"" + body + "\": particle " + std::to_string(number) +
+                                            " has no finite position at time " + std::to_string(state.time) +
+                                            "; the time step is too large or the material data are wrong");
+    for (int side = 0; side < 2; ++side) {
+      const double beyond = side == 0 ? grid.domain_min[axis] - x[axis] : x[axis] - grid.domain_max[axis];
+      if (beyond <= 0) continue;
+      if (grid.face[2 * axis + side] == Face::Free) return true;
+      if (beyond > 0.5 * grid.cell_size)
+        throw Error(ErrorKind::Numerical, "body \"" + body + "\": particle " + std::to_string(number) + " is " +
+                                              std::to_string(beyond) + " beyond the " + (side == 0 ? "min " : "max ") +
+                                              "xyz"[axis] + " face, which lets nothing through, at time " +
+                                              std::to_string(state.time));
+    }
+  }
+  return false;
+}
+
+void book_departure(const Material& material, BodyState& body, std::int64_t p) {
+  BodyTotals& totals = body.totals;
+  const double* v = &body.velocity[4 * p];
+  const double mass = body.position[4 * p + 3];
+  ++totals.left_particles;
+  totals.left_mass += mass;
+  for (int axis = 0; axis < 3; ++axis) totals.left_momentum[axis] += mass * v[axis];
+  totals.left_energy +=
+      0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + mass / material.density * body.energy[p];
+}
+
+// New order of a body's particles: `source[i]` is the old place of the particle now at i; padding repeats the last one.
+void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Workspace& workspace) {
+  const std::int64_t padded = static_cast<std::int64_t>(source.size());
+  auto records = [&](AlignedVector<double>& array) {
+    workspace.scratch.resize(static_cast<std::size_t>(4 * padded));
+    double* to = workspace.scratch.data();
+    const double* from = array.data();
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+    for (std::int64_t i = 0; i < padded; ++i)
+      for (int c = 0; c < 4; ++c) to[4 * i + c] = from[4 * static_cast<std::int64_t>(source[i]) + c];
+    array.swap(workspace.scratch);
+  };
+  auto scalars = [&](AlignedVector<double>& array) {
+    workspace.scratch.resize(static_cast<std::size_t>(padded));
+    double* to = workspace.scratch.data();
+    const double* from = array.data();
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+    for (std::int64_t i = 0; i < padded; ++i) to[i] = from[source[i]];
+    array.swap(workspace.scratch);
+  };
+  records(body.position);
+  records(body.velocity);
+  body.for_each_scalar(scalars);
+  AlignedVector<std::int32_t> number(static_cast<std::size_t>(padded));
+  for (std::int64_t i = 0; i < padded; ++i) number[i] = body.number[source[i]];
+  body.number.swap(number);
+  body.padded = padded;
+}
+
+void bin_body(const Model& model, State& state, Workspace& workspace, int index) {
+  BodyState& body = state.bodies[index];
+  const Grid& grid = model.grid;
+  const double inverse_cell = 1.0 / grid.cell_size;
+
+  // Old places in their present order, without padding and without those that leave.
+  std::vector<std::int32_t> place, bin;
+  place.reserve(body.particles);
+  bin.reserve(body.particles);
+  std::vector<Group> groups;
+  BlockTable table(body.groups.size() + 64);
+  std::uint64_t last_key = ~std::uint64_t{0};
+  std::int32_t last_group = -1;
+  auto take = [&](std::int64_t p) {
+    const double* x = &body.position[4 * p];
+    if (has_left(model, state, model.bodies[index].name, body.number[p], x)) {
+      book_departure(model.material_of(index), body, p);
+      return;
+    }
+    std::array<std::int32_t, 3> cell, block;
+    for (int axis = 0; axis < 3; ++axis) {
+      cell[axis] = static_cast<std::int32_t>(std::floor((x[axis] - grid.domain_min[axis]) * inverse_cell));
+      block[axis] = floor_div4(cell[axis]);
+    }
+    const std::uint64_t key = block_key(block, 0);
+    if (key != last_key) {
+      last_key = key;
+      last_group = table.insert(key, static_cast<std::int32_t>(groups.size()));
+      if (last_group == static_cast<std::int32_t>(groups.size())) {
+        Group group;
+        group.block = block;
+        group.low = {3, 3, 3};
+        group.high = {0, 0, 0};
+        groups.push_back(group);
+      }
+    }
+    Group& group = groups[last_group];
+    ++group.count;
+    std::int32_t in_block = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      const std::int32_t c = cell[axis] & 3;
+      group.low[axis] = std::min(group.low[axis], c);
+      group.high[axis] = std::max(group.high[axis], c);
+      in_block = 4 * in_block + c;
+    }
+    place.push_back(static_cast<std::int32_t>(p));
+    bin.push_back(last_group * block_nodes + in_block);
+  };
+  if (body.groups.empty()) {
+    for (std::int64_t p = 0; p < body.particles; ++p) take(p);
+  } else {
+    for (const Group& group : body.groups)
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) take(p);
+  }
+  body.particles = static_cast<std::int64_t>(place.size());
+
+  // Groups by block: z, then y, then x. The particles keep their order within a cell.
+  std::vector<std::int32_t> order(groups.size());
+  for (std::size_t g = 0; g < order.size(); ++g) order[g] = static_cast<std::int32_t>(g);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return block_key(groups[a].block, 0) < block_key(groups[b].block, 0);
+  });
+  std::vector<std::int32_t> cursor(groups.size() * block_nodes, 0);
+  for (const std::int32_t b : bin) ++cursor[b];
+  body.groups.clear();
+  std::int64_t next = 0;
+  for (const std::int32_t g : order) {
+    Group group = groups[g];
+    group.begin = next;
+    std::int64_t at = next;
+    for (int c = 0; c < block_nodes; ++c) {
+      const std::int32_t count = cursor[g * block_nodes + c];
+      cursor[g * block_nodes + c] = static_cast<std::int32_t>(at);
+      at += count;
+    }
+    next = group.padded_end();
+    body.groups.push_back(group);
+  }
+  AlignedVector<std::int32_t> source(static_cast<std::size_t>(next), -1);
+  for (std::size_t i = 0; i < place.size(); ++i) source[cursor[bin[i]]++] = place[i];
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p)
+      source[p] = source[group.begin + group.count - 1];
+  reorder(body, source, workspace);
+  // The padding moves like the particle that it repeats but weighs nothing.
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p) {
+      body.position[4 * p + 3] = 0;
+      body.number[p] = -1;
+    }
+  body.drifted = false;
+}
+
+// Nodes at the symmetry and fixed faces. A slot's nodes lie at block * 4 + (0..3) from domain_min.
+void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable& table) {
+  const Grid& grid = model.grid;
+  workspace.faces.clear();
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const Face kind = grid.face[2 * axis + side];
+      if (kind == Face::Free) continue;
+      FaceNodes face;
+      face.axis = axis;
+      face.fixed = kind == Face::Fixed;
+      const std::int32_t plane =
+          side == 0 ? 0
+                    : static_cast<std::int32_t>(std::lround((grid.domain_max[axis] - grid.domain_min[axis]) / grid.cell_size));
+      const std::int32_t ghost = side == 0 ? plane - 1 : plane + 1;
+      const std::int32_t image = 2 * plane - ghost;
+      const auto visit_layer = [&](std::int32_t coordinate, auto&& visit) {
+        for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+          if (workspace.slots[s].block[axis] != floor_div4(coordinate)) continue;
+          for (int n = 0; n < block_nodes; ++n)
+            if (((n >> (2 * axis)) & 3) == (coordinate & 3)) visit(s, n);
+        }
+      };
+      visit_layer(plane, [&](std::size_t s, int n) { face.plane.push_back(static_cast<std::int64_t>(s) * block_nodes + n); });
+      visit_layer(ghost, [&](std::size_t s, int n) {
+        std::array<std::int32_t, 3> block = workspace.slots[s].block;
+        block[axis] = floor_div4(image);
+        const std::int32_t other = table.find(block_key(block, workspace.slots[s].field));
+        if (other < 0) return;  // no particle near the face there: the node carries nothing
+        const int node = (n & ~(3 << (2 * axis))) | (image & 3) << (2 * axis);
+        MirrorPair pair;
+        pair.ghost = static_cast<std::int64_t>(s) * block_nodes + n;
+        pair.image = static_cast<std::int64_t>(other) * block_nodes + node;
+        face.pairs.push_back(pair);
+      });
+      workspace.faces.push_back(std::move(face));
+    }
+}
+
+bool in_region(const Clamp& clamp, const Vector3& x) {
+  if (clamp.region == Region::Box) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (x[axis] < clamp.a[axis] || x[axis] > clamp.b[axis]) return false;
+    return true;
+  }
+  double length = 0, along = 0, squared = 0;
+  for (int axis = 0; axis < 3; ++axis) length += clamp.b[axis] * clamp.b[axis];
+  for (int axis = 0; axis < 3; ++axis) along += (x[axis] - clamp.a[axis]) * clamp.b[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double across = x[axis] - clamp.a[axis] - along / length * clamp.b[axis];
+    squared += across * across;
+  }
+  return squared >= clamp.radius * clamp.radius;
+}
+
+void find_clamp_nodes(const Model& model, Workspace& workspace) {
+  workspace.clamps.clear();
+  for (const Clamp& clamp : model.clamps)
+    for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+      const Slot& slot = workspace.slots[s];
+      if (clamp.body >= 0 && slot.field != model.field_of(clamp.body)) continue;
+      for (int n = 0; n < block_nodes; ++n) {
+        Vector3 x;
+        for (int axis = 0; axis < 3; ++axis)
+          x[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * slot.block[axis] + ((n >> (2 * axis)) & 3));
+        if (in_region(clamp, x)) workspace.clamps.push_back({static_cast<std::int64_t>(s) * block_nodes + n, clamp.axes});
+      }
+    }
+}
+
+}  // namespace
+
+void bin_particles(const Model& model, State& state, Workspace& workspace, bool all) {
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b)
+    if (all || state.bodies[b].drifted) {
+      bin_body(model, state, workspace, b);
+      workspace.linked = false;
+    }
+}
+
+void link_grid(const Model& model, const State& state, Workspace& workspace) {
+  // Groups in the order of work.
+  workspace.links.clear();
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b)
+    for (std::size_t g = 0; g < state.bodies[b].groups.size(); ++g) {
+      const Group& group = state.bodies[b].groups[g];
+      GroupLinks link;
+      link.body = b;
+      link.group = static_cast<std::int32_t>(g);
+      for (int axis = 0; axis < 3; ++axis) {
+        link.tile_low[axis] = group.low[axis];
+        link.tile_high[axis] = group.high[axis] + 3;
+        link.corner[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * group.block[axis] - 1);
+      }
+      workspace.links.push_back(link);
+    }
+  const auto pencil_order = [&](const GroupLinks& link) {
+    const auto& block = state.bodies[link.body].groups[link.group].block;
+    const std::int32_t colour = (block[2] & 1) * 2 + (block[1] & 1);
+    return std::array<std::int32_t, 5>{colour, block[2], block[1], link.body, block[0]};
+  };
+  std::sort(workspace.links.begin(), workspace.links.end(),
+            [&](const GroupLinks& a, const GroupLinks& b) { return pencil_order(a) < pencil_order(b); });
+  workspace.pencils.clear();
+  workspace.colour.fill(0);
+  for (std::int32_t i = 0, n = static_cast<std::int32_t>(workspace.links.size()); i < n;) {
+    const auto first = pencil_order(workspace.links[i]);
+    std::int32_t end = i + 1;
+    while (end < n && std::equal(first.begin(), first.begin() + 3, pencil_order(workspace.links[end]).begin())) ++end;
+    workspace.pencils.push_back({i, end});
+    for (int c = first[0] + 1; c <= 4; ++c) workspace.colour[c] = static_cast<std::int32_t>(workspace.pencils.size());
+    i = end;
+  }
+
+  // Slots: the neighbour blocks that each group's tile reaches.
+  const auto for_reached = [&](const GroupLinks& link, auto&& visit) {
+    const Group& group = state.bodies[link.body].groups[link.group];
+    for (int z = (link.tile_low[2] + 3) >> 2; z <= (link.tile_high[2] + 3) >> 2; ++z)
+      for (int y = (link.tile_low[1] + 3) >> 2; y <= (link.tile_high[1] + 3) >> 2; ++y)
+        for (int x = (link.tile_low[0] + 3) >> 2; x <= (link.tile_high[0] + 3) >> 2; ++x)
+          visit((z * 3 + y) * 3 + x,
+                std::array<std::int32_t, 3>{group.block[0] + x - 1, group.block[1] + y - 1, group.block[2] + z - 1});
+  };
+  std::vector<Slot> found;
+  {
+    BlockTable table(workspace.slots.size() + 64);
+    for (const GroupLinks& link : workspace.links) {
+      const int field = model.field_of(link.body);
+      for_reached(link, [&](int, const std::array<std::int32_t, 3>& block) {
+        const std::int32_t next = static_cast<std::int32_t>(found.size());
+        if (table.insert(block_key(block, field), next) == next) {
+          Slot slot;
+          slot.block = block;
+          slot.field = field;
+          found.push_back(slot);
+        }
+      });
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const Slot& a, const Slot& b) {
+    return block_key(a.block, a.field) < block_key(b.block, b.field);
+  });
+  workspace.slots.swap(found);
+  BlockTable table(workspace.slots.size());
+  for (std::size_t s = 0; s < workspace.slots.size(); ++s)
+    table.insert(block_key(workspace.slots[s].block, workspace.slots[s].field), static_cast<std::int32_t>(s));
+  for (GroupLinks& link : workspace.links) {
+    link.slot.fill(-1);
+    const int field = model.field_of(link.body);
+    for_reached(link, [&](int neighbour, const std::array<std::int32_t, 3>& block) {
+      link.slot[neighbour] = table.find(block_key(block, field));
+    });
+  }
+
+  // Mixed blocks and their contact records.
+  workspace.mixed.clear();
+  std::int32_t contacts = 0;
+  for (std::int32_t s = 0, n = static_cast<std::int32_t>(workspace.slots.size()); s < n;) {
+    std::int32_t end = s + 1;
+    while (end < n && workspace.slots[end].block == workspace.slots[s].block) ++end;
+    if (end - s > 1) {
+      workspace.mixed.push_back({s, end - s});
+      for (std::int32_t i = s; i < end; ++i) workspace.slots[i].contact = contacts++;
+    }
+    s = end;
+  }
+  find_face_nodes(model, workspace, table);
+  // A mirror image in a mixed block needs the sums of its ghost.
+  for (const FaceNodes& face : workspace.faces)
+    for (const MirrorPair& pair : face.pairs) {
+      Slot& ghost = workspace.slots[pair.ghost / block_nodes];
+      if (workspace.slots[pair.image / block_nodes].contact >= 0 && ghost.contact < 0) ghost.contact = contacts++;
+    }
+  for (GroupLinks& link : workspace.links)
+    for (const std::int32_t s : link.slot)
+      if (s >= 0 && workspace.slots[s].contact >= 0) link.contact = true;
+  find_clamp_nodes(model, workspace);
+
+  workspace.nodes.resize(workspace.slots.size() * block_nodes);
+  workspace.contacts.resize(static_cast<std::size_t>(contacts) * block_nodes);
+  workspace.stress_sums.resize(workspace.links.size());
+  workspace.move_sums.resize(workspace.links.size());
+  workspace.slot_contact_force.resize(workspace.slots.size());
+  workspace.linked = true;
+}
+
+KernelGroup kernel_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link, double dt) {
+  const Group& group = state.bodies[link.body].groups[link.group];
+  const Grid& grid = model.grid;
+  KernelGroup k;
+  k.begin = group.begin;
+  k.end = group.padded_end();
+  k.inverse_cell = 1.0 / grid.cell_size;
+  k.time_step = dt;
+  k.inverse_density = 1.0 / model.material_of(link.body).density;
+  for (int axis = 0; axis < 3; ++axis) {
+    k.corner[axis] = link.corner[axis];
+    k.tile_low[axis] = link.tile_low[axis];
+    k.tile_high[axis] = link.tile_high[axis];
+    // Within the drift limit, and at free faces within the domain.
+    k.bound_low[axis] = link.corner[axis] + grid.cell_size * (1 + group.low[axis] - drift_limit);
+    k.bound_high[axis] = link.corner[axis] + grid.cell_size * (2 + group.high[axis] + drift_limit);
+    if (grid.face[2 * axis] == Face::Free) k.bound_low[axis] = std::max(k.bound_low[axis], grid.domain_min[axis]);
+    if (grid.face[2 * axis + 1] == Face::Free) k.bound_high[axis] = std::min(k.bound_high[axis], grid.domain_max[axis]);
+  }
+  k.bound_low[3] = -std::numeric_limits<double>::infinity();
+  k.bound_high[3] = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 27; ++i) {
+    const std::int32_t s = link.slot[i];
+    k.nodes[i] = s < 0 ? nullptr : &workspace.nodes[static_cast<std::size_t>(s) * block_nodes];
+    const std::int32_t c = s < 0 ? -1 : workspace.slots[s].contact;
+    k.contact[i] = c < 0 ? nullptr : &workspace.contacts[static_cast<std::size_t>(c) * block_nodes];
+  }
+  return k;
+}
+
+KernelParticles kernel_particles(BodyState& body) {
+  KernelParticles k;
+  k.position = body.position.data();
+  k.velocity = body.velocity.data();
+  for (int c = 0; c < 6; ++c) k.stress[c] = body.stress[c].data();
+  k.volume_ratio = body.volume_ratio.data();
+  k.energy = body.energy.data();
+  k.plastic_strain = body.plastic_strain.data();
+  k.yield_stress = body.yield_stress.data();
+  k.temperature = body.temperature.data();
+  for (int c = 0; c < 9; ++c) k.deformation[c] = body.deformation[c].data();
+  return k;
+}
+
+KernelMaterial kernel_material(const Material& material, double cell_size) {
+  KernelMaterial k{};
+  k.density = material.density;
+  k.K = material.K;
+  k.G = material.G;
+  k.lambda = material.K - 2.0 / 3.0 * material.G;
+  k.A = material.yield_stress;
+  k.B = material.hardening_modulus;
+  k.n = material.hardening_exponent;
+  k.rate_coefficient = material.rate_coefficient;
+  k.inverse_reference_rate = 1.0 / material.reference_strain_rate;
+  k.thermal = material.thermal();
+  if (k.thermal) {
+    k.thermal_exponent = material.thermal_exponent;
+    k.room_temperature = material.room_temperature;
+    k.inverse_melt_range = 1.0 / (material.melt_temperature - material.room_temperature);
+    k.heating = material.taylor_quinney / (material.density * material.specific_heat);
+  }
+  k.rho_c0_squared = material.density * material.eos_sound_speed * material.eos_sound_speed;
+  k.slope = material.eos_slope;
+  k.gruneisen = material.gruneisen;
+  k.failure_strain =
+      material.failure == Failure::None ? std::numeric_limits<double>::infinity() : material.failure_strain;
+  k.viscosity_linear = material.viscosity_linear;
+  k.viscosity_quadratic = material.viscosity_quadratic;
+  k.cell_size = cell_size;
+  k.rate_dependent = material.rate_dependent();
+  k.viscous = material.viscous();
+  return k;
+}
+
+std::int64_t Workspace::memory_bytes() const {
+  const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
+  std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(links) + bytes(pencils) + bytes(mixed) +
+                       bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(scratch);
+  for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
+  return total;
+}
+
+}  // namespace ogive

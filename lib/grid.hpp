@@ -1,0 +1,107 @@
+// The background grid of one step, sparse: nodes exist in blocks of 4 x 4 x 4, and a block exists for a velocity field
+// only where particles of that field reach it. Memory follows the material, never the domain.
+//
+// A slot is one block of one field. Where two or more fields have slots of the same block, the block is mixed: there, and
+// only there, contact is looked for and contact records are kept. All of this is rebuilt whenever a body is binned anew
+// (every 10 to 20 steps at impact speeds) and can be rebuilt from the particles' groups at any time, so that none of it
+// belongs to a checkpoint.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "aligned.hpp"
+#include "model.hpp"
+#include "state.hpp"
+#include "transfer/kernels.hpp"
+
+namespace ogive {
+
+constexpr int block_nodes = block_cells * block_cells * block_cells;
+
+struct Slot {
+  std::array<std::int32_t, 3> block{};
+  std::int32_t field = 0;
+  std::int32_t contact = -1;  // index of its contact records, in units of blocks; -1: none
+};
+
+// A group of particles with its place on the grid.
+struct GroupLinks {
+  std::int32_t body = 0, group = 0;
+  std::array<std::int32_t, 27> slot{};  // of the neighbour blocks, x fastest; -1 where the tile does not reach
+  std::array<std::int32_t, 3> tile_low{}, tile_high{};
+  Vector3 corner{};
+  bool contact = false;  // some of its slots have contact records
+};
+
+// Groups of all bodies in one row of blocks along x: worked on by one thread, in order. Pencils of one of the four colours
+// (y and z block coordinates even or odd) touch no common node, so that they run in any order with the same bits.
+struct Pencil {
+  std::int32_t begin = 0, end = 0;  // in Workspace::links
+};
+
+struct MixedBlock {
+  std::int32_t first_slot = 0, count = 0;
+};
+
+// A node beyond a mirror face and its image inside.
+struct MirrorPair {
+  std::int64_t ghost = 0, image = 0;
+  double ghost_mass = 0;
+};
+
+// Nodes at one symmetry or fixed face.
+struct FaceNodes {
+  int axis = 0;
+  bool fixed = false;
+  std::vector<MirrorPair> pairs;
+  std::vector<std::int64_t> plane;
+};
+
+struct ClampNode {
+  std::int64_t node = 0;
+  std::int32_t axes = 0;
+};
+
+// Everything that a step needs besides model and state; holds no information of its own between steps.
+struct Workspace {
+  const KernelTable* kernels = nullptr;
+  int threads = 1;
+  bool linked = false;  // the slots fit the groups
+
+  std::vector<Slot> slots;                // ordered by block (z, y, x), then field
+  AlignedVector<NodeRecord> nodes;        // 64 a slot
+  AlignedVector<ContactRecord> contacts;  // 64 a slot that has them
+  std::vector<GroupLinks> links;          // ordered by colour, pencil, body, block x
+  std::vector<Pencil> pencils;
+  std::array<std::int32_t, 5> colour{};   // first pencil of each colour, and the end
+  std::vector<MixedBlock> mixed;
+  std::vector<FaceNodes> faces;
+  std::vector<ClampNode> clamps;
+  std::vector<KernelMaterial> materials;  // by body
+
+  // One entry a link, filled by the kernels and summed in order.
+  std::vector<StressSums> stress_sums;
+  std::vector<MoveSums> move_sums;
+  // One entry a slot of a mixed block.
+  std::vector<Vector3> slot_contact_force;
+  AlignedVector<double> scratch;          // for binning
+  AlignedVector<std::int32_t> scratch_int;
+
+  std::int64_t memory_bytes() const;
+};
+
+// Orders the particles of the bodies that have drifted (or of all, if `all`) by block and cell, removes those that have
+// left the domain and books them. Throws Error(Numerical) for a particle that is not a number or has crossed a mirror face.
+void bin_particles(const Model& model, State& state, Workspace& workspace, bool all);
+
+// Slots, links, pencils, mixed blocks, face and clamp nodes for the groups as they are.
+void link_grid(const Model& model, const State& state, Workspace& workspace);
+
+// Arguments of a kernel call.
+KernelGroup kernel_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link, double dt);
+KernelParticles kernel_particles(BodyState& body);
+KernelMaterial kernel_material(const Material& material, double cell_size);
+
+}  // namespace ogive

@@ -1,0 +1,279 @@
+// The constitutive update of a vector of particles: strain increment to stress, energy, plastic strain, temperature and
+// failure. Strength (deviator) and equation of state (pressure) combine freely; what a law does not need is not compiled.
+//
+// Objective rate: the old deviator is turned by the Cayley rotation of the spin increment (Hughes & Winget 1980), which is
+//   exactly orthogonal, so that a rigid rotation changes no invariant of stress.
+// J2: radial return with yield stress A + B eps_p^n, Huang et al. 2010 Eq. (37), or Johnson-Cook, Eq. (39), solved by a
+//   guarded Newton iteration, not by one explicit step.
+// Pressure: linear p = -K ln J, or Mie-Grueneisen, Eq. (38), with E the internal energy per initial volume. The
+//   Grueneisen coefficient is gamma = gamma0 / (1 + mu), so that on the Hugoniot (38) gives its pressure exactly. In
+//   expansion the thermal part is gamma0 E / J, which meets (38) at J = 1 and lets debris cool as it expands instead of
+//   keeping the pressure of the solid.
+// Energy: dE = J_mid s_mid : deps - p_mid dJ, implicit in p_mid, solved in closed form.
+// Failure: at eps_p >= failure_strain the deviator and any tension are zero, the cold pressure in expansion too; the
+//   elastic energy that goes with them is booked as failure loss.
+// Neo-Hookean: sigma = ((lambda ln J) I + G (F F^T - I)) / J, energy lambda/2 ln^2 J - G ln J + G/2 (tr F F^T - 3).
+// Bulk viscosity: q = rho h |d| (c_q h |d| + c_l c) while the volume shrinks at rate d; it acts on the grid and heats, and
+//   is no part of the stored stress.
+#pragma once
+
+#include "simd/lanes.hpp"
+#include "simd/vector_math.hpp"
+#include "transfer/kernels.hpp"
+
+namespace ogive {
+namespace OGIVE_ISA_NAMESPACE {
+
+enum { strength_elastic = 0, strength_neo_hookean = 1, strength_j2_power = 2, strength_johnson_cook = 3 };
+enum { eos_linear = 0, eos_mie_gruneisen = 1 };
+
+template <class V>
+struct Symmetric {
+  V xx, yy, zz, yz, xz, xy;
+};
+
+template <class V>
+OGIVE_INLINE V trace(const Symmetric<V>& a) {
+  return a.xx + a.yy + a.zz;
+}
+
+template <class V>
+OGIVE_INLINE V contract(const Symmetric<V>& a, const Symmetric<V>& b) {
+  return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.yz * b.yz + a.xz * b.xz + a.xy * b.xy);
+}
+
+// R a R^T with the Cayley rotation of the rotation vector (x, y, z) of this step.
+template <class V>
+OGIVE_INLINE Symmetric<V> rotated(const Symmetric<V>& a, V x, V y, V z) {
+  x *= 0.5;
+  y *= 0.5;
+  z *= 0.5;
+  const V c = 2.0 / (1.0 + x * x + y * y + z * z);
+  // R = I + c (W + W W), W the skew matrix of the half vector.
+  const V r00 = 1.0 - c * (y * y + z * z), r01 = c * (x * y - z), r02 = c * (x * z + y);
+  const V r10 = c * (x * y + z), r11 = 1.0 - c * (x * x + z * z), r12 = c * (y * z - x);
+  const V r20 = c * (x * z - y), r21 = c * (y * z + x), r22 = 1.0 - c * (x * x + y * y);
+  const V m00 = r00 * a.xx + r01 * a.xy + r02 * a.xz, m01 = r00 * a.xy + r01 * a.yy + r02 * a.yz,
+          m02 = r00 * a.xz + r01 * a.yz + r02 * a.zz;
+  const V m10 = r10 * a.xx + r11 * a.xy + r12 * a.xz, m11 = r10 * a.xy + r11 * a.yy + r12 * a.yz,
+          m12 = r10 * a.xz + r11 * a.yz + r12 * a.zz;
+  const V m20 = r20 * a.xx + r21 * a.xy + r22 * a.xz, m21 = r20 * a.xy + r21 * a.yy + r22 * a.yz,
+          m22 = r20 * a.xz + r21 * a.yz + r22 * a.zz;
+  return {m00 * r00 + m01 * r01 + m02 * r02, m10 * r10 + m11 * r11 + m12 * r12, m20 * r20 + m21 * r21 + m22 * r22,
+          m10 * r20 + m11 * r21 + m12 * r22, m00 * r20 + m01 * r21 + m02 * r22, m00 * r10 + m01 * r11 + m02 * r12};
+}
+
+// What a vector of particles brings in and takes away.
+template <class V>
+struct LawState {
+  V L[3][3];  // velocity gradient times the time step, L[i][j] = dv_i/dx_j dt
+  V dt;
+  Symmetric<V> stress;
+  V volume_ratio, energy;
+  V plastic_strain, yield_stress, temperature;
+  V F[3][3];
+  // Results for the sums, per initial volume.
+  V viscous_pressure, plastic_work, viscous_work, failure_loss, wave_speed_squared;
+  IntVecOf<V> newly_failed;
+  bool plastic_changed;
+};
+
+// Thermal softening 1 - T*^m of Eq. (39), T* = (T - T_room) / (T_melt - T_room) within 0..1.
+template <class V>
+OGIVE_INLINE V thermal_softening(const KernelMaterial& m, V temperature) {
+  V t = (temperature - m.room_temperature) * m.inverse_melt_range;
+  t = min(max(t, broadcast<V>(0.0)), broadcast<V>(1.0));
+  return 1.0 - select(t > 0.0, pow(t, broadcast<V>(m.thermal_exponent)), broadcast<V>(0.0));
+}
+
+// Solves seq - 3 G x = (A + B (eps_p + x)^n) theta (1 + C ln rate*) for the plastic strain increment x of the lanes in
+// `plastic`. The left side minus the right falls monotonically and is convex, so Newton from any point ends left of the
+// root after one step and climbs to it from there.
+template <class V, int strength>
+OGIVE_INLINE V plastic_increment(const KernelMaterial& m, const LawState<V>& s, V equivalent, V theta,
+                                 IntVecOf<V> plastic) {
+  const V three_G = broadcast<V>(3.0 * m.G);
+  V x = max((equivalent - s.yield_stress) / three_G, broadcast<V>(0.0));
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const V strain = max(s.plastic_strain + x, broadcast<V>(1e-300));
+    const V hardening = m.B * pow(strain, broadcast<V>(m.n));
+    V flow = (m.A + hardening) * theta;
+    V slope = m.n * hardening * theta / strain;
+    if constexpr (strength == strength_johnson_cook) {
+      if (m.rate_dependent) {
+        const V rate = x * m.inverse_reference_rate / s.dt;
+        const V factor = 1.0 + m.rate_coefficient * log(max(rate, broadcast<V>(1.0)));
+        slope = slope * factor +
+                select(rate > 1.0, flow * m.rate_coefficient / max(x, broadcast<V>(1e-300)), broadcast<V>(0.0));
+        flow *= factor;
+      }
+    }
+    const V miss = equivalent - three_G * x - flow;
+    x = max(x + miss / (three_G + slope), 0.1 * x);
+    // Newton squares the relative miss: below 1e-6 the step just taken leaves it at round-off.
+    if (!any(plastic & (abs(miss) > 1e-6 * equivalent))) break;
+  }
+  return select(plastic, x, broadcast<V>(0.0));
+}
+
+template <int strength, int eos, class V>
+OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
+  const V zero = broadcast<V>(0.0);
+  const Symmetric<V> D = {s.L[0][0],
+                          s.L[1][1],
+                          s.L[2][2],
+                          0.5 * (s.L[1][2] + s.L[2][1]),
+                          0.5 * (s.L[0][2] + s.L[2][0]),
+                          0.5 * (s.L[0][1] + s.L[1][0])};
+  const V volumetric = trace(D);
+  const V J0 = s.volume_ratio;
+  V J1;
+  s.plastic_work = s.failure_loss = s.viscous_work = s.viscous_pressure = zero;
+  s.newly_failed = zero > zero;
+  s.plastic_changed = false;
+
+  if constexpr (strength == strength_neo_hookean) {
+    V F[3][3];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        F[i][j] = s.F[i][j] + s.L[i][0] * s.F[0][j] + s.L[i][1] * s.F[1][j] + s.L[i][2] * s.F[2][j];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) s.F[i][j] = F[i][j];
+    J1 = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
+         F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+    const V log_J = log(J1);
+    const Symmetric<V> b = {F[0][0] * F[0][0] + F[0][1] * F[0][1] + F[0][2] * F[0][2],
+                            F[1][0] * F[1][0] + F[1][1] * F[1][1] + F[1][2] * F[1][2],
+                            F[2][0] * F[2][0] + F[2][1] * F[2][1] + F[2][2] * F[2][2],
+                            F[1][0] * F[2][0] + F[1][1] * F[2][1] + F[1][2] * F[2][2],
+                            F[0][0] * F[2][0] + F[0][1] * F[2][1] + F[0][2] * F[2][2],
+                            F[0][0] * F[1][0] + F[0][1] * F[1][1] + F[0][2] * F[1][2]};
+    const V inverse_J = 1.0 / J1;
+    const V pressure_part = (m.lambda * log_J - m.G) * inverse_J, shear_part = m.G * inverse_J;
+    s.stress = {pressure_part + shear_part * b.xx, pressure_part + shear_part * b.yy, pressure_part + shear_part * b.zz,
+                shear_part * b.yz,                 shear_part * b.xz,                 shear_part * b.xy};
+    s.energy = 0.5 * m.lambda * log_J * log_J - m.G * log_J + 0.5 * m.G * (trace(b) - 3.0);
+    // Longitudinal wave along n: rho0 c^2 = lambda (1 - ln J) + G (1 + n b n); n b n by Gershgorin's bound.
+    const V stretch = max(max(b.xx + abs(b.xy) + abs(b.xz), b.yy + abs(b.xy) + abs(b.yz)), b.zz + abs(b.xz) + abs(b.yz));
+    s.wave_speed_squared = (m.lambda * max(1.0 - log_J, zero) + m.G * (1.0 + stretch)) * (1.0 / m.density);
+    s.volume_ratio = J1;
+  } else {
+    J1 = J0 * (1.0 + volumetric);  // Eq. (30)
+    const V p0 = -(1.0 / 3.0) * trace(s.stress);
+    const Symmetric<V> old_deviator =
+        rotated<V>({s.stress.xx + p0, s.stress.yy + p0, s.stress.zz + p0, s.stress.yz, s.stress.xz, s.stress.xy},
+                   0.5 * (s.L[2][1] - s.L[1][2]), 0.5 * (s.L[0][2] - s.L[2][0]), 0.5 * (s.L[1][0] - s.L[0][1]));
+    const V two_G = broadcast<V>(2.0 * m.G), mean = (1.0 / 3.0) * volumetric;
+    Symmetric<V> deviator = {old_deviator.xx + two_G * (D.xx - mean), old_deviator.yy + two_G * (D.yy - mean),
+                             old_deviator.zz + two_G * (D.zz - mean), old_deviator.yz + two_G * D.yz,
+                             old_deviator.xz + two_G * D.xz,          old_deviator.xy + two_G * D.xy};
+    const V J_mid = 0.5 * (J0 + J1);
+
+    IntVecOf<V> failed = zero > zero;
+    if constexpr (strength == strength_j2_power || strength == strength_johnson_cook) {
+      failed = s.plastic_strain >= m.failure_strain;
+      const V equivalent = sqrt(1.5 * contract(deviator, deviator));
+      const IntVecOf<V> plastic = (equivalent > s.yield_stress) & ~failed;
+      if (any(plastic)) {
+        V theta = broadcast<V>(1.0);
+        if constexpr (strength == strength_johnson_cook)
+          if (m.thermal) theta = thermal_softening(m, s.temperature);
+        const V x = plastic_increment<V, strength>(m, s, equivalent, theta, plastic);
+        const V flow = equivalent - 3.0 * m.G * x;
+        const V shrink = select(plastic, flow / max(equivalent, broadcast<V>(1e-300)), broadcast<V>(1.0));
+        deviator = {deviator.xx * shrink, deviator.yy * shrink, deviator.zz * shrink,
+                    deviator.yz * shrink, deviator.xz * shrink, deviator.xy * shrink};
+        s.plastic_strain += x;
+        s.plastic_work = J_mid * flow * x;
+        if constexpr (strength == strength_johnson_cook)
+          if (m.thermal) {
+            s.temperature += m.heating * s.plastic_work;
+            theta = thermal_softening(m, s.temperature);
+          }
+        const V strain = max(s.plastic_strain, broadcast<V>(1e-300));
+        s.yield_stress = select(plastic, (m.A + m.B * pow(strain, broadcast<V>(m.n))) * theta, s.yield_stress);
+        s.newly_failed = plastic & (s.plastic_strain >= m.failure_strain);
+        s.plastic_changed = true;
+      }
+      deviator = {select(failed, zero, deviator.xx), select(failed, zero, deviator.yy),
+                  select(failed, zero, deviator.zz), select(failed, zero, deviator.yz),
+                  select(failed, zero, deviator.xz), select(failed, zero, deviator.xy)};
+    }
+
+    const Symmetric<V> middle = {old_deviator.xx + deviator.xx, old_deviator.yy + deviator.yy,
+                                 old_deviator.zz + deviator.zz, old_deviator.yz + deviator.yz,
+                                 old_deviator.xz + deviator.xz, old_deviator.xy + deviator.xy};
+    V energy = s.energy + 0.5 * J_mid * contract(middle, D);
+    const V dJ = J1 - J0;
+
+    V p1, modulus;
+    if constexpr (eos == eos_linear) {
+      p1 = -m.K * log(J1);
+      p1 = select(failed, max(p1, zero), p1);
+      energy -= 0.5 * (p0 + p1) * dJ;
+      modulus = broadcast<V>(m.K);
+    } else {
+      const V inverse_J = 1.0 / J1;
+      const V mu = inverse_J - 1.0;
+      const IntVecOf<V> compressed = mu > 0.0;
+      // The Hugoniot's pole (mu = 1 / (s - 1)) is kept out of reach: beyond it Eq. (38) has no meaning.
+      const V denominator = max(1.0 - (m.slope - 1.0) * mu, broadcast<V>(0.1));
+      const V inverse = 1.0 / denominator;
+      const V scale = m.rho_c0_squared * inverse * inverse;
+      const V hugoniot = scale * mu * inverse_J;
+      const V half_gamma = broadcast<V>(0.5 * m.gruneisen);
+      const V cold_compressed = hugoniot * (1.0 - half_gamma * mu * J1);
+      const V cold_expanded = select(failed, zero, m.rho_c0_squared * mu);
+      const V cold = select(compressed, cold_compressed, cold_expanded);
+      const V thermal = m.gruneisen * select(compressed, broadcast<V>(1.0), inverse_J);
+      // p1 = cold + thermal (energy - (p0 + p1) dJ / 2), solved for p1. The factor of p1 is 1 - O(strain increment): it
+      // comes near zero only if a volume halves within one step, and is then held, which only makes p1 less implicit.
+      const V factor = max(1.0 + 0.5 * thermal * dJ, broadcast<V>(0.25));
+      p1 = (cold + thermal * (energy - 0.5 * p0 * dJ)) / factor;
+      p1 = select(failed, max(p1, zero), p1);
+      energy -= 0.5 * (p0 + p1) * dJ;
+      const V slope_of_hugoniot = scale * (1.0 + 2.0 * mu + 2.0 * (m.slope - 1.0) * mu * inverse_J * inverse);
+      const V stiffness_compressed = inverse_J * (slope_of_hugoniot * (1.0 - half_gamma * mu * J1) -
+                                                  hugoniot * half_gamma * J1 * J1) +
+                                     m.gruneisen * J1 * max(p1, zero);
+      const V stiffness_expanded =
+          m.rho_c0_squared * inverse_J + (1.0 + m.gruneisen) * thermal * max(energy, zero);
+      modulus = select(compressed, max(stiffness_compressed, broadcast<V>(m.rho_c0_squared)), stiffness_expanded);
+    }
+
+    if constexpr (strength == strength_j2_power || strength == strength_johnson_cook) {
+      if (any(s.newly_failed)) {
+        // The deviator's elastic energy and, in tension, that of the pressure leave the particle.
+        const V tension = max(-p1, zero);
+        const V loss = J1 * (contract(deviator, deviator) * (0.25 / m.G) + 0.5 * tension * tension / modulus);
+        s.failure_loss = select(s.newly_failed, loss, zero);
+        energy -= s.failure_loss;
+        deviator = {select(s.newly_failed, zero, deviator.xx), select(s.newly_failed, zero, deviator.yy),
+                    select(s.newly_failed, zero, deviator.zz), select(s.newly_failed, zero, deviator.yz),
+                    select(s.newly_failed, zero, deviator.xz), select(s.newly_failed, zero, deviator.xy)};
+        p1 = select(s.newly_failed, max(p1, zero), p1);
+      }
+    }
+
+    s.stress = {deviator.xx - p1, deviator.yy - p1, deviator.zz - p1, deviator.yz, deviator.xz, deviator.xy};
+    s.wave_speed_squared = (modulus + (4.0 / 3.0) * m.G) * J1 * (1.0 / m.density);
+    s.energy = energy;
+    s.volume_ratio = J1;
+  }
+
+  if (m.viscous) {
+    const V c = sqrt(s.wave_speed_squared);
+    const V rate = max(-volumetric / s.dt, zero);
+    const V speed = m.viscosity_quadratic * m.cell_size * rate + m.viscosity_linear * c;
+    s.viscous_pressure = m.density / J1 * m.cell_size * rate * speed;
+    s.viscous_work = s.viscous_pressure * max(J0 - J1, zero);
+    s.energy += s.viscous_work;
+    // The viscous time step: c is replaced by Q + sqrt(Q^2 + c^2), Q the viscous speed.
+    const V Q = select(rate > 0.0, speed, zero);
+    const V fast = Q + sqrt(Q * Q + s.wave_speed_squared);
+    s.wave_speed_squared = fast * fast;
+  }
+}
+
+}  // namespace OGIVE_ISA_NAMESPACE
+}  // namespace ogive

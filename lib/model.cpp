@@ -1,0 +1,279 @@
+// Validation of the model: every message names the field, its value and what was expected.
+#include "model.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "archive.hpp"
+#include "error.hpp"
+
+namespace ogive {
+namespace {
+
+std::string text(double x) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.6g", x);
+  return buffer;
+}
+
+[[noreturn]] void refuse(const std::string& field, const std::string& expected, const std::string& got) {
+  throw Error(ErrorKind::Argument, field + ": must be " + expected + ", got " + got);
+}
+
+void require(bool holds, const std::string& field, const std::string& expected, double got) {
+  if (!holds) refuse(field, expected, text(got));
+}
+
+// Comparisons are written so that a value that is not a number fails them.
+void require_positive(const std::string& field, double x) { require(x > 0 && std::isfinite(x), field, "> 0 and finite", x); }
+void require_not_negative(const std::string& field, double x) {
+  require(x >= 0 && std::isfinite(x), field, ">= 0 and finite", x);
+}
+void require_finite(const std::string& field, double x) { require(std::isfinite(x), field, "finite", x); }
+template <class E>
+void require_choice(const std::string& field, E x, int count) {
+  const int i = static_cast<int>(x);
+  if (i < 0 || i >= count) refuse(field, "0.." + std::to_string(count - 1), std::to_string(i));
+}
+
+}  // namespace
+
+void Material::validate() {
+  require_choice("strength", strength, 4);
+  require_choice("eos", eos, 2);
+  require_choice("failure", failure, 2);
+  require_positive("density", density);
+
+  const bool young = youngs_modulus != 0 || poisson_ratio != 0, bulk = bulk_modulus != 0 || shear_modulus != 0;
+  if (young && bulk)
+    throw Error(ErrorKind::Argument,
+                "elastic constants: give youngs_modulus and poisson_ratio, or bulk_modulus and shear_modulus, not both");
+  if (bulk) {
+    require_positive("bulk_modulus", bulk_modulus);
+    require_not_negative("shear_modulus", shear_modulus);
+    K = bulk_modulus;
+    G = shear_modulus;
+  } else {
+    require_positive("youngs_modulus", youngs_modulus);
+    require(poisson_ratio > -1 && poisson_ratio < 0.5, "poisson_ratio", "between -1 and 0.5", poisson_ratio);
+    K = youngs_modulus / (3 * (1 - 2 * poisson_ratio));
+    G = youngs_modulus / (2 * (1 + poisson_ratio));
+  }
+  if (eos == EquationOfState::MieGruneisen) {
+    require_positive("eos_sound_speed", eos_sound_speed);
+    require_not_negative("eos_slope", eos_slope);
+    require_not_negative("gruneisen", gruneisen);
+    if (hyperelastic())
+      throw Error(ErrorKind::Argument, "eos: a neo-Hookean material brings its own pressure; must be linear");
+  }
+  if (plastic()) {
+    require_positive("yield_stress", yield_stress);
+    require_positive("shear_modulus", G);
+    require_not_negative("hardening_modulus", hardening_modulus);
+    require_positive("hardening_exponent", hardening_exponent);
+  }
+  if (strength == Strength::JohnsonCook) {
+    require_not_negative("rate_coefficient", rate_coefficient);
+    require_positive("reference_strain_rate", reference_strain_rate);
+    require_not_negative("thermal_exponent", thermal_exponent);
+    if (thermal()) {
+      require_not_negative("room_temperature", room_temperature);
+      require(melt_temperature > room_temperature && std::isfinite(melt_temperature), "melt_temperature",
+              "above room_temperature", melt_temperature);
+      require_positive("specific_heat", specific_heat);
+      require(taylor_quinney >= 0 && taylor_quinney <= 1, "taylor_quinney", "0..1", taylor_quinney);
+    }
+  }
+  if (failure == Failure::PlasticStrain) {
+    if (!plastic())
+      throw Error(ErrorKind::Argument, "failure: by plastic strain needs a plastic strength (j2_power or johnson_cook)");
+    require_positive("failure_strain", failure_strain);
+  }
+  require_not_negative("viscosity_linear", viscosity_linear);
+  require_not_negative("viscosity_quadratic", viscosity_quadratic);
+}
+
+const ContactRule& Model::rule_of(int a, int b) const {
+  for (const PairRule& pair : pairs)
+    if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a)) return pair.rule;
+  return contact;
+}
+
+void Model::validate_grid() const {
+  require_positive("cell_size", grid.cell_size);
+  const char axis_name[] = {'x', 'y', 'z'};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string index = std::string("[") + axis_name[axis] + "]";
+    require_finite("domain_min" + index, grid.domain_min[axis]);
+    require(std::isfinite(grid.domain_max[axis]) && grid.domain_max[axis] > grid.domain_min[axis], "domain_max" + index,
+            "above domain_min = " + text(grid.domain_min[axis]), grid.domain_max[axis]);
+    require_choice("face " + std::string(1, axis_name[axis]) + " min", grid.face[2 * axis], 3);
+    require_choice("face " + std::string(1, axis_name[axis]) + " max", grid.face[2 * axis + 1], 3);
+    const double cells = (grid.domain_max[axis] - grid.domain_min[axis]) / grid.cell_size;
+    require(cells <= 120000, "domain" + index, "at most 120000 cells", cells);
+    if (grid.face[2 * axis + 1] != Face::Free && std::abs(cells - std::round(cells)) > 1e-6)
+      throw Error(ErrorKind::Argument, "domain_max" + index + ": must lie a whole number of cells from domain_min, " +
+                                           "because that face is symmetry or fixed; got " + text(cells) + " cells");
+    require(grid.face[2 * axis + 1] == Face::Free || cells >= 3, "domain" + index,
+            "at least 3 cells where its max face is symmetry or fixed", cells);
+  }
+}
+
+void Model::validate_numerics() const {
+  require_choice("shape_function", numerics.shape_function, 2);
+  require(numerics.time_step_factor > 0 && numerics.time_step_factor <= 1.5, "time_step_factor", "> 0 and <= 1.5",
+          numerics.time_step_factor);
+  require(numerics.maximum_time_step > 0, "maximum_time_step", "> 0", numerics.maximum_time_step);
+  for (int axis = 0; axis < 3; ++axis) require_finite("gravity", numerics.gravity[axis]);
+}
+
+void Model::validate_clamp(const Clamp& clamp) const {
+  require_choice("clamp region", clamp.region, 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    require_finite("clamp a", clamp.a[axis]);
+    require_finite("clamp b", clamp.b[axis]);
+  }
+  if (clamp.region == Region::Box) {
+    for (int axis = 0; axis < 3; ++axis)
+      require(clamp.a[axis] <= clamp.b[axis], "clamp b", "at least a = " + text(clamp.a[axis]), clamp.b[axis]);
+  } else {
+    require_positive("clamp radius", clamp.radius);
+    require(clamp.b[0] != 0 || clamp.b[1] != 0 || clamp.b[2] != 0, "clamp b", "a direction that is not zero", 0);
+  }
+  require(clamp.axes >= 1 && clamp.axes <= 7, "clamp axes", "1..7", clamp.axes);
+}
+
+void Model::validate_contact(const ContactRule& rule, const char* where) const {
+  const std::string prefix(where);
+  require_choice(prefix + "normal", rule.normal, 2);
+  require_choice(prefix + "detection", rule.detection, 2);
+  require_not_negative(prefix + "friction", rule.friction);
+  require(rule.gap_offset >= -2 && rule.gap_offset <= 2, prefix + "gap_offset", "-2..2", rule.gap_offset);
+}
+
+void Model::validate_all() const {
+  if (bodies.empty()) throw Error(ErrorKind::Argument, "bodies: at least one is needed, got none");
+  require_choice("contact method", contact_method, 3);
+  validate_grid();
+  validate_numerics();
+  const auto known = [&](std::int32_t body, const std::string& field, bool none_allowed) {
+    if (body >= (none_allowed ? -1 : 0) && body < static_cast<std::int32_t>(bodies.size())) return;
+    refuse(field, "the id of a body (0.." + std::to_string(bodies.size() - 1) + ")", std::to_string(body));
+  };
+  known(contact.master, "contact master", true);
+  for (const PairRule& pair : pairs) {
+    known(pair.a, "contact pair", false);
+    known(pair.b, "contact pair", false);
+    known(pair.rule.master, "contact pair master", true);
+    if (pair.rule.normal == NormalRule::Master && pair.rule.master >= 0 && pair.rule.master != pair.a &&
+        pair.rule.master != pair.b)
+      refuse("contact pair master", "one of the pair", "body " + std::to_string(pair.rule.master));
+  }
+  for (const Clamp& clamp : clamps) known(clamp.body, "clamp body", true);
+  known(stop.body, "stop body", true);
+}
+
+void Model::exchange(Archive& a) {
+  a.value("model/grid/cell_size", grid.cell_size);
+  a.value("model/grid/domain_min", grid.domain_min);
+  a.value("model/grid/domain_max", grid.domain_max);
+  a.value("model/grid/face", grid.face);
+  a.value("model/numerics/shape_function", numerics.shape_function);
+  a.value("model/numerics/time_step_factor", numerics.time_step_factor);
+  a.value("model/numerics/maximum_time_step", numerics.maximum_time_step);
+  a.value("model/numerics/gravity", numerics.gravity);
+
+  const auto count = [&](const char* name, auto& list, std::int32_t limit) {
+    std::int32_t n = static_cast<std::int32_t>(list.size());
+    a.value(name, n);
+    if (a.loading()) {
+      if (n < 0 || n > limit)
+        throw Error(ErrorKind::Format, std::string(name) + ": expected 0.." + std::to_string(limit) + ", found " +
+                                           std::to_string(n));
+      list.resize(n);
+    }
+  };
+  count("model/clamps/count", clamps, 1000000);
+  for (std::size_t i = 0; i < clamps.size(); ++i) {
+    const std::string at = "model/clamps/" + std::to_string(i) + "/";
+    a.value(at + "region", clamps[i].region);
+    a.value(at + "a", clamps[i].a);
+    a.value(at + "b", clamps[i].b);
+    a.value(at + "radius", clamps[i].radius);
+    a.value(at + "body", clamps[i].body);
+    a.value(at + "axes", clamps[i].axes);
+  }
+  count("model/materials/count", materials, 65535);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const std::string at = "model/materials/" + std::to_string(i) + "/";
+    Material& m = materials[i];
+    a.value(at + "name", m.name);
+    a.value(at + "strength", m.strength);
+    a.value(at + "eos", m.eos);
+    a.value(at + "failure", m.failure);
+    const std::pair<const char*, double*> numbers[] = {
+        {"density", &m.density},
+        {"youngs_modulus", &m.youngs_modulus},
+        {"poisson_ratio", &m.poisson_ratio},
+        {"bulk_modulus", &m.bulk_modulus},
+        {"shear_modulus", &m.shear_modulus},
+        {"yield_stress", &m.yield_stress},
+        {"hardening_modulus", &m.hardening_modulus},
+        {"hardening_exponent", &m.hardening_exponent},
+        {"rate_coefficient", &m.rate_coefficient},
+        {"reference_strain_rate", &m.reference_strain_rate},
+        {"thermal_exponent", &m.thermal_exponent},
+        {"melt_temperature", &m.melt_temperature},
+        {"room_temperature", &m.room_temperature},
+        {"specific_heat", &m.specific_heat},
+        {"taylor_quinney", &m.taylor_quinney},
+        {"eos_sound_speed", &m.eos_sound_speed},
+        {"eos_slope", &m.eos_slope},
+        {"gruneisen", &m.gruneisen},
+        {"failure_strain", &m.failure_strain},
+        {"viscosity_linear", &m.viscosity_linear},
+        {"viscosity_quadratic", &m.viscosity_quadratic},
+    };
+    for (const auto& [name, number] : numbers) a.value(at + name, *number);
+  }
+  count("model/bodies/count", bodies, 65535);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::string at = "model/bodies/" + std::to_string(i) + "/";
+    a.value(at + "name", bodies[i].name);
+    a.value(at + "material", bodies[i].material);
+  }
+  const auto rule = [&](const std::string& at, ContactRule& r) {
+    a.value(at + "normal", r.normal);
+    a.value(at + "master", r.master);
+    a.value(at + "friction", r.friction);
+    a.value(at + "detection", r.detection);
+    a.value(at + "gap_offset", r.gap_offset);
+  };
+  a.value("model/contact/method", contact_method);
+  rule("model/contact/", contact);
+  count("model/contact/pairs/count", pairs, 1000000);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::string at = "model/contact/pairs/" + std::to_string(i) + "/";
+    a.value(at + "a", pairs[i].a);
+    a.value(at + "b", pairs[i].b);
+    rule(at, pairs[i].rule);
+  }
+  a.value("model/stop/body", stop.body);
+  a.value("model/stop/settle_window", stop.settle_window);
+  a.value("model/stop/settle_tolerance", stop.settle_tolerance);
+  a.value("model/stop/when_stopped", stop.when_stopped);
+  a.value("model/stop/when_out", stop.when_out);
+
+  if (a.loading()) {
+    for (const Body& body : bodies)
+      if (body.material < 0 || body.material >= static_cast<std::int32_t>(materials.size()))
+        throw Error(ErrorKind::Format, "model/bodies: material " + std::to_string(body.material) + " is unknown");
+    for (Material& m : materials) m.validate();
+    for (const Clamp& clamp : clamps) validate_clamp(clamp);
+    validate_contact(contact, "contact ");
+    for (const PairRule& pair : pairs) validate_contact(pair.rule, "contact pair ");
+    validate_all();
+  }
+}
+
+}  // namespace ogive

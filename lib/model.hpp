@@ -1,0 +1,132 @@
+// What a step only reads: grid, boundaries, numerics, materials, bodies' rules, contact rules, stop condition.
+//
+// Built by the C interface field by field, checked once by Model::validate (which also fills the derived values), then
+// never changed. All quantities are in one consistent set of units (see capi/ogive.h for the dimension and range of each
+// field: the definitions here are the same ones under the same names).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace ogive {
+
+class Archive;
+
+using Vector3 = std::array<double, 3>;
+
+enum class Face : std::int32_t { Free = 0, Symmetry = 1, Fixed = 2 };
+enum class ShapeFunction : std::int32_t { Linear = 0, QuadraticBSpline = 1 };
+enum class Strength : std::int32_t { Elastic = 0, NeoHookean = 1, J2Power = 2, JohnsonCook = 3 };
+enum class EquationOfState : std::int32_t { Linear = 0, MieGruneisen = 1 };
+enum class Failure : std::int32_t { None = 0, PlasticStrain = 1 };
+enum class ContactMethod : std::int32_t { SingleField = 0, HuangFirst = 1, HuangSecond = 2 };
+enum class NormalRule : std::int32_t { Master = 0, Average = 1 };
+enum class Detection : std::int32_t { SharedNode = 0, Gap = 1 };
+enum class Region : std::int32_t { Box = 0, OutsideCylinder = 1 };
+
+struct Grid {
+  double cell_size = 0;
+  Vector3 domain_min{};
+  Vector3 domain_max{};
+  std::array<Face, 6> face{};  // x min, x max, y min, y max, z min, z max
+};
+
+struct Numerics {
+  ShapeFunction shape_function = ShapeFunction::QuadraticBSpline;
+  double time_step_factor = 0.8;
+  double maximum_time_step = std::numeric_limits<double>::infinity();
+  Vector3 gravity{};
+};
+
+struct Clamp {
+  Region region = Region::Box;
+  Vector3 a{}, b{};
+  double radius = 0;
+  std::int32_t body = -1;
+  std::int32_t axes = 7;
+};
+
+struct Material {
+  std::string name;
+  Strength strength = Strength::Elastic;
+  EquationOfState eos = EquationOfState::Linear;
+  Failure failure = Failure::None;
+  double density = 0;
+  double youngs_modulus = 0, poisson_ratio = 0, bulk_modulus = 0, shear_modulus = 0;
+  double yield_stress = 0, hardening_modulus = 0, hardening_exponent = 1;
+  double rate_coefficient = 0, reference_strain_rate = 1;
+  double thermal_exponent = 0, melt_temperature = 0, room_temperature = 293, specific_heat = 0, taylor_quinney = 1;
+  double eos_sound_speed = 0, eos_slope = 0, gruneisen = 0;
+  double failure_strain = 0;
+  double viscosity_linear = 0, viscosity_quadratic = 0;
+
+  // Derived by validate(): always both, whichever pair was given.
+  double K = 0, G = 0;
+
+  bool plastic() const { return strength == Strength::J2Power || strength == Strength::JohnsonCook; }
+  bool thermal() const { return strength == Strength::JohnsonCook && thermal_exponent > 0; }
+  bool rate_dependent() const { return strength == Strength::JohnsonCook && rate_coefficient > 0; }
+  bool hyperelastic() const { return strength == Strength::NeoHookean; }
+  bool viscous() const { return viscosity_linear > 0 || viscosity_quadratic > 0; }
+  // Throws Error naming the field; fills the derived values.
+  void validate();
+};
+
+struct Body {
+  std::string name;
+  std::int32_t material = -1;
+};
+
+struct ContactRule {
+  NormalRule normal = NormalRule::Average;
+  std::int32_t master = -1;
+  double friction = 0;
+  Detection detection = Detection::Gap;
+  double gap_offset = 0;
+};
+
+struct PairRule {
+  std::int32_t a = -1, b = -1;
+  ContactRule rule;
+};
+
+struct Stop {
+  std::int32_t body = -1;
+  double settle_window = 0, settle_tolerance = 0;
+  bool when_stopped = true, when_out = true;
+};
+
+struct Model {
+  Grid grid;
+  Numerics numerics;
+  std::vector<Clamp> clamps;
+  std::vector<Material> materials;
+  std::vector<Body> bodies;
+  ContactMethod contact_method = ContactMethod::HuangSecond;
+  ContactRule contact;
+  std::vector<PairRule> pairs;
+  Stop stop;
+
+  // One velocity field where one body is present: the single-field method has one for all bodies, and so has a scene of
+  // one body.
+  int field_count() const {
+    return contact_method == ContactMethod::SingleField ? 1 : static_cast<int>(bodies.size());
+  }
+  int field_of(int body) const { return contact_method == ContactMethod::SingleField ? 0 : body; }
+  const Material& material_of(int body) const { return materials[bodies[body].material]; }
+  const ContactRule& rule_of(int a, int b) const;
+
+  // Each throws Error naming field, value and expectation.
+  void validate_grid() const;
+  void validate_numerics() const;
+  void validate_clamp(const Clamp& clamp) const;
+  void validate_contact(const ContactRule& rule, const char* where) const;
+  void validate_all() const;  // what needs the whole model
+
+  void exchange(Archive& archive);  // saves or loads every field
+};
+
+}  // namespace ogive

@@ -1,0 +1,150 @@
+// Storage and saving of the state.
+#include "state.hpp"
+
+#include <algorithm>
+
+#include "archive.hpp"
+#include "error.hpp"
+
+namespace ogive {
+
+std::int64_t State::particle_count() const {
+  std::int64_t n = 0;
+  for (const BodyState& body : bodies) n += body.particles;
+  return n;
+}
+
+std::int64_t State::memory_bytes() const {
+  std::int64_t total = 0;
+  const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
+  for (const BodyState& body : bodies) {
+    total += bytes(body.position) + bytes(body.velocity) + bytes(body.volume_ratio) + bytes(body.energy) +
+             bytes(body.plastic_strain) + bytes(body.yield_stress) + bytes(body.temperature) + bytes(body.number) +
+             bytes(body.groups);
+    for (const auto& c : body.stress) total += bytes(c);
+    for (const auto& c : body.deformation) total += bytes(c);
+  }
+  return total;
+}
+
+void allocate_particles(const Material& material, std::int64_t padded, BodyState& body) {
+  const std::size_t n = static_cast<std::size_t>(padded);
+  body.padded = padded;
+  body.position.assign(4 * n, 0.0);
+  body.velocity.assign(4 * n, 0.0);
+  for (auto& c : body.stress) c.assign(n, 0.0);
+  body.volume_ratio.assign(n, 1.0);
+  body.energy.assign(n, 0.0);
+  if (material.plastic()) {
+    body.plastic_strain.assign(n, 0.0);
+    body.yield_stress.assign(n, material.yield_stress);
+  }
+  if (material.thermal()) body.temperature.assign(n, material.room_temperature);
+  if (material.hyperelastic())
+    for (int c = 0; c < 9; ++c) body.deformation[c].assign(n, c % 4 == 0 ? 1.0 : 0.0);
+  body.number.assign(n, -1);
+}
+
+void State::exchange(const Model& model, Archive& a) {
+  if (a.loading()) bodies.assign(model.bodies.size(), BodyState{});
+  a.value("state/time", time);
+  a.value("state/last_time_step", last_time_step);
+  a.value("state/stable_time_step", stable_time_step);
+  a.value("state/steps", steps);
+  a.value("state/particle_steps", particle_steps);
+  a.value("state/stop/reference_time", stop.reference_time);
+  a.value("state/stop/reference_speed", stop.reference_speed);
+  a.value("state/stop/slowed", stop.slowed);
+  a.value("state/stop/reason", stop.reason);
+  a.value("state/ledger/friction_dissipation", ledger.friction_dissipation);
+  a.value("state/ledger/contact_work", ledger.contact_work);
+  a.value("state/ledger/boundary_work", ledger.boundary_work);
+  a.value("state/ledger/external_work", ledger.external_work);
+  a.value("state/ledger/boundary_impulse", ledger.boundary_impulse);
+  a.value("state/ledger/external_impulse", ledger.external_impulse);
+  a.value("state/ledger/initial_total", ledger.initial_total);
+
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    BodyState& body = bodies[b];
+    const Material& material = model.material_of(static_cast<int>(b));
+    const std::string at = "state/bodies/" + std::to_string(b) + "/";
+    BodyTotals& t = body.totals;
+    a.value(at + "failed_particles", t.failed_particles);
+    a.value(at + "failed_mass", t.failed_mass);
+    a.value(at + "first_failure_time", t.first_failure_time);
+    a.value(at + "failure_loss", t.failure_loss);
+    a.value(at + "left_particles", t.left_particles);
+    a.value(at + "left_mass", t.left_mass);
+    a.value(at + "left_energy", t.left_energy);
+    a.value(at + "left_momentum", t.left_momentum);
+    a.value(at + "plastic_dissipation", t.plastic_dissipation);
+    a.value(at + "viscous_dissipation", t.viscous_dissipation);
+    a.value(at + "contact_force", t.contact_force);
+    a.value(at + "initial_velocity", t.initial_velocity);
+    a.value(at + "maximum_speed", t.maximum_speed);
+    a.value(at + "maximum_speed_ever", t.maximum_speed_ever);
+    a.value(at + "drifted", body.drifted);
+
+    // Groups: eleven whole numbers each.
+    std::vector<std::int64_t> groups;
+    if (!a.loading())
+      for (const Group& g : body.groups) {
+        groups.insert(groups.end(), {g.block[0], g.block[1], g.block[2], g.begin, g.count});
+        groups.insert(groups.end(), {g.low[0], g.low[1], g.low[2], g.high[0], g.high[1], g.high[2]});
+      }
+    a.resizable(at + "groups", groups, std::int64_t{11} << 28);
+    if (a.loading()) {
+      if (groups.size() % 11 != 0)
+        throw Error(ErrorKind::Format, at + "groups: expected a multiple of 11 numbers, found " +
+                                           std::to_string(groups.size()));
+      body.particles = body.padded = 0;
+      for (std::size_t i = 0; i < groups.size(); i += 11) {
+        Group g;
+        bool good = groups[i + 3] == body.padded && groups[i + 4] > 0 && groups[i + 4] < (std::int64_t{1} << 31);
+        g.begin = groups[i + 3];
+        g.count = static_cast<std::int32_t>(groups[i + 4]);
+        for (int axis = 0; axis < 3; ++axis) {
+          g.block[axis] = static_cast<std::int32_t>(groups[i + axis]);
+          g.low[axis] = static_cast<std::int32_t>(groups[i + 5 + axis]);
+          g.high[axis] = static_cast<std::int32_t>(groups[i + 8 + axis]);
+          good = good && std::abs(groups[i + axis]) <= 32000 && g.low[axis] >= 0 && g.low[axis] <= g.high[axis] &&
+                 g.high[axis] < block_cells;
+        }
+        if (!good) throw Error(ErrorKind::Format, at + "groups: group " + std::to_string(i / 11) + " is not consistent");
+        body.particles += g.count;
+        body.padded = g.padded_end();
+        body.groups.push_back(g);
+      }
+    }
+    const std::int64_t n = body.padded;
+    a.sized(at + "position", body.position, 4 * n);
+    a.sized(at + "velocity", body.velocity, 4 * n);
+    static const char* const component[] = {"xx", "yy", "zz", "yz", "xz", "xy"};
+    for (int c = 0; c < 6; ++c) a.sized(at + "stress_" + component[c], body.stress[c], n);
+    a.sized(at + "volume_ratio", body.volume_ratio, n);
+    a.sized(at + "energy", body.energy, n);
+    if (material.plastic()) {
+      a.sized(at + "plastic_strain", body.plastic_strain, n);
+      a.sized(at + "yield_stress", body.yield_stress, n);
+    }
+    if (material.thermal()) a.sized(at + "temperature", body.temperature, n);
+    if (material.hyperelastic())
+      for (int c = 0; c < 9; ++c) a.sized(at + "deformation_" + std::to_string(c), body.deformation[c], n);
+    a.sized(at + "number", body.number, n);
+    if (a.loading()) {
+      // Positions must lie where the groups say, or the tiles would be left: the bounds are those of the drift limit.
+      const double h = model.grid.cell_size;
+      for (const Group& g : body.groups)
+        for (std::int64_t p = g.begin; p < g.padded_end() && !body.drifted; ++p)
+          for (int axis = 0; axis < 3; ++axis) {
+            const double cell = (body.position[4 * p + axis] - model.grid.domain_min[axis]) / h - 4.0 * g.block[axis];
+            if (!(cell > g.low[axis] - 0.5 && cell < g.high[axis] + 1.5))
+              throw Error(ErrorKind::Format, at + "position: particle " + std::to_string(p) + " is outside its group");
+          }
+    }
+  }
+  if (a.loading() && !(stable_time_step > 0))
+    throw Error(ErrorKind::Format, "state/stable_time_step: must be > 0, found " + std::to_string(stable_time_step));
+}
+
+}  // namespace ogive

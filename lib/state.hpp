@@ -1,0 +1,110 @@
+// All that a step changes, and exactly what a checkpoint holds: particles by body, their grouping, the ledger's running
+// sums and the clock. The grid is not here: every step makes it anew from the particles.
+//
+// Particles of a body lie in groups: a group is the particles of one block of 4 x 4 x 4 cells, ordered by cell when they
+// were last binned. Each group begins at a multiple of `group_padding` and is filled up to one with massless particles,
+// so that vector loads never reach into another group. Between binnings particles may drift up to half a cell out of the
+// cells that the group held; the drift bounds of the group say how far.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aligned.hpp"
+#include "model.hpp"
+
+namespace ogive {
+
+class Archive;
+
+constexpr int block_cells = 4;        // cells along an edge of a block
+constexpr int group_padding = 8;      // particles
+constexpr int tile_nodes = 7;         // nodes along an edge of a group's tile: the block's 4, one below, two above
+
+struct Group {
+  std::array<std::int32_t, 3> block{};  // block coordinates: cell = 4 block .. 4 block + 3, counted from domain_min
+  std::int64_t begin = 0;               // first particle
+  std::int32_t count = 0;               // real particles; the padding follows
+  // Lowest and highest cell (0..3) that held a particle at the last binning, per axis.
+  std::array<std::int32_t, 3> low{}, high{};
+
+  std::int64_t padded_end() const { return begin + (count + group_padding - 1) / group_padding * group_padding; }
+};
+
+// Running sums of one body.
+struct BodyTotals {
+  std::int64_t failed_particles = 0, left_particles = 0;
+  double failed_mass = 0, first_failure_time = -1, failure_loss = 0;
+  double left_mass = 0, left_energy = 0;
+  Vector3 left_momentum{};
+  double plastic_dissipation = 0, viscous_dissipation = 0;
+  Vector3 contact_force{};  // of the last step
+  Vector3 initial_velocity{};
+  double maximum_speed = 0, maximum_speed_ever = 0;
+};
+
+// Particle arrays are `padded` long; those that the material does not need are empty.
+struct BodyState {
+  std::int64_t particles = 0;  // real ones
+  std::int64_t padded = 0;
+  AlignedVector<double> position;  // records {x, y, z, mass}
+  AlignedVector<double> velocity;  // records {vx, vy, vz, 1}
+  std::array<AlignedVector<double>, 6> stress;  // Cauchy: xx yy zz yz xz xy, tension positive
+  AlignedVector<double> volume_ratio;           // current / initial volume
+  AlignedVector<double> energy;                 // internal energy per initial volume
+  AlignedVector<double> plastic_strain;
+  AlignedVector<double> yield_stress;           // (A + B eps_p^n)(1 - T*^m) at the current state
+  AlignedVector<double> temperature;
+  std::array<AlignedVector<double>, 9> deformation;  // F row by row
+  AlignedVector<std::int32_t> number;                // the particle's number in its body, -1 in the padding
+  std::vector<Group> groups;                         // ordered by block: z, then y, then x
+  double wave_speed = 0;                             // largest c + |v| bound of its groups after the last step
+  bool drifted = false;                              // some particle has left its group's bounds: bin before the next step
+  BodyTotals totals;
+
+  // Calls f(array) for each per-particle array of doubles with one value a particle that is in use.
+  template <class F>
+  void for_each_scalar(F&& f) {
+    for (auto& component : stress) f(component);
+    f(volume_ratio);
+    f(energy);
+    if (!plastic_strain.empty()) f(plastic_strain);
+    if (!yield_stress.empty()) f(yield_stress);
+    if (!temperature.empty()) f(temperature);
+    if (!deformation[0].empty())
+      for (auto& component : deformation) f(component);
+  }
+};
+
+// Momentum and energy that no particle carries; see ogive_ledger.
+struct Ledger {
+  double friction_dissipation = 0, contact_work = 0, boundary_work = 0, external_work = 0;
+  Vector3 boundary_impulse{}, external_impulse{};
+  double initial_total = 0;
+};
+
+// Memory of the stop condition.
+struct StopState {
+  double reference_time = 0, reference_speed = 0;
+  bool slowed = false;
+  std::int32_t reason = 0;
+};
+
+struct State {
+  double time = 0, last_time_step = 0, stable_time_step = 0;
+  std::int64_t steps = 0, particle_steps = 0;
+  std::vector<BodyState> bodies;
+  Ledger ledger;
+  StopState stop;
+
+  std::int64_t particle_count() const;
+  std::int64_t memory_bytes() const;
+  void exchange(const Model& model, Archive& archive);
+};
+
+// Gives a body the arrays that its material needs, `padded` long.
+void allocate_particles(const Material& material, std::int64_t padded, BodyState& body);
+
+}  // namespace ogive

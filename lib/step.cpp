@@ -1,0 +1,212 @@
+// One step of the material point method, update stress first. Equation numbers are those of Huang et al. 2010.
+#include "step.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "boundary/boundary.hpp"
+#include "contact/contact.hpp"
+#include "error.hpp"
+#include "time_step.hpp"
+
+namespace ogive {
+namespace {
+
+void clear_grid(Workspace& workspace);
+void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace);
+void nodal_velocities(const Model& model, Workspace& workspace);
+void update_stress_and_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
+void trial_velocities(const Model& model, State& state, Workspace& workspace, double dt);
+void accelerations(Workspace& workspace, double dt);
+void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt);
+
+}  // namespace
+
+void advance_one_step(const Model& model, State& state, Workspace& workspace, double dt) {
+  bin_particles(model, state, workspace, false);                 // particles that left their cells; the domain
+  if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
+
+  clear_grid(workspace);
+  map_mass_and_momentum(model, state, workspace);                // (27), (28), (9)
+  fold_momentum(workspace);                                      // symmetry and fixed faces
+  nodal_velocities(model, workspace);                            // (6)
+  if (model.contact_method == ContactMethod::HuangSecond)
+    remove_approach(model, state, workspace);                    // (23)-(25)
+  unfold_velocity(workspace);
+  update_stress_and_internal_force(model, state, workspace, dt); // (29), (30), stress, (31)
+  fold_force(state, workspace, dt);
+  trial_velocities(model, state, workspace, dt);                 // (32), (11) or (26)
+  hold_faces(state, workspace);
+  if (model.contact_method != ContactMethod::SingleField)
+    apply_contact_force(model, state, workspace, dt);            // (12)-(22), (14)
+  apply_clamps(state, workspace);
+  unfold_motion(state, workspace);
+  accelerations(workspace, dt);
+  update_velocity_and_position(model, state, workspace, dt);     // (34), (33)
+
+  state.time += dt;
+  state.last_time_step = dt;
+  ++state.steps;
+  state.particle_steps += state.particle_count();
+  state.stable_time_step = stable_time_step(model, state, workspace);  // (35)
+}
+
+namespace {
+
+// Runs work(link, index) over all groups, colour by colour: the groups of one colour write to disjoint nodes.
+template <class Work>
+void for_coloured_groups(Workspace& workspace, Work&& work) {
+  for (int colour = 0; colour < 4; ++colour) {
+    const std::int32_t begin = workspace.colour[colour], end = workspace.colour[colour + 1];
+#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 1) if (end - begin > 1)
+    for (std::int32_t p = begin; p < end; ++p)
+      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
+  }
+}
+
+// Runs work(node record) over all nodes.
+template <class Work>
+void for_nodes(Workspace& workspace, Work&& work) {
+  const std::int64_t count = static_cast<std::int64_t>(workspace.nodes.size());
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+  for (std::int64_t i = 0; i < count; ++i) work(workspace.nodes[i]);
+}
+
+void clear_grid(Workspace& workspace) {
+  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+  for (std::int64_t s = 0; s < slots; ++s)
+    std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0, block_nodes * sizeof(NodeRecord));
+  if (!workspace.contacts.empty())
+    std::memset(static_cast<void*>(workspace.contacts.data()), 0, workspace.contacts.size() * sizeof(ContactRecord));
+}
+
+void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace) {
+  const int shape = static_cast<int>(model.numerics.shape_function);
+  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+    const KernelGroup group = kernel_group(model, state, workspace, link, 0);
+    const KernelParticles particles = kernel_particles(state.bodies[link.body]);
+    workspace.kernels->map_momentum[shape](group, particles);
+    if (link.contact) workspace.kernels->map_contact[shape](group, particles);
+  });
+}
+
+// Momentum to velocity. A node whose mass is round-off of a particle's carries nothing.
+void nodal_velocities(const Model& model, Workspace& workspace) {
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const Body& body : model.bodies) lightest = std::min(lightest, model.materials[body.material].density);
+  const double cut_off = 1e-14 * lightest * std::pow(model.grid.cell_size, 3);
+  for_nodes(workspace, [&](NodeRecord& node) {
+    if (!(node.v[3] > cut_off)) {
+      for (double& c : node.v) c = 0;
+      return;
+    }
+    const double inverse = 1.0 / node.v[3];
+    for (int c = 0; c < 3; ++c) node.v[c] *= inverse;
+  });
+}
+
+void update_stress_and_internal_force(const Model& model, State& state, Workspace& workspace, double dt) {
+  const int shape = static_cast<int>(model.numerics.shape_function);
+  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
+    const Material& material = model.material_of(link.body);
+    workspace.kernels->update_stress[shape][static_cast<int>(material.strength)][static_cast<int>(material.eos)](
+        kernel_group(model, state, workspace, link, dt), kernel_particles(state.bodies[link.body]),
+        workspace.materials[link.body], workspace.stress_sums[index]);
+  });
+  for (std::size_t l = 0; l < workspace.links.size(); ++l) {
+    const StressSums& sums = workspace.stress_sums[l];
+    const int b = workspace.links[l].body;
+    BodyTotals& totals = state.bodies[b].totals;
+    totals.plastic_dissipation += sums.plastic_dissipation;
+    totals.viscous_dissipation += sums.viscous_dissipation;
+    totals.failure_loss += sums.failure_loss;
+    totals.failed_mass += sums.failed_mass;
+    if (sums.failed_particles > 0 && totals.first_failure_time < 0) totals.first_failure_time = state.time + dt;
+    totals.failed_particles += sums.failed_particles;
+    if (sums.bad_particle >= 0) {
+      const BodyState& body = state.bodies[b];
+      const double* x = &body.position[4 * sums.bad_particle];
+      throw Error(ErrorKind::Numerical,
+                  "body \"" + model.bodies[b].name + "\": particle " + std::to_string(body.number[sums.bad_particle]) +
+                      " at (" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) +
+                      "), time " + std::to_string(state.time) + ": volume ratio must be positive and finite, got " +
+                      std::to_string(body.volume_ratio[sums.bad_particle]) +
+                      "; a smaller time_step_factor may help");
+    }
+  }
+}
+
+// Node records become {velocity, mass | trial velocity}.
+void trial_velocities(const Model& model, State& state, Workspace& workspace, double dt) {
+  const Vector3 g = model.numerics.gravity;
+  const bool heavy = g[0] != 0 || g[1] != 0 || g[2] != 0;
+  for_nodes(workspace, [&](NodeRecord& node) {
+    if (!(node.v[3] > 0)) {
+      for (double& c : node.f) c = 0;
+      return;
+    }
+    const double factor = dt / node.v[3];
+    for (int c = 0; c < 3; ++c) node.f[c] = node.v[c] + node.f[c] * factor + g[c] * dt;
+  });
+  if (heavy)
+    for (const NodeRecord& node : workspace.nodes)
+      for (int c = 0; c < 3; ++c) {
+        state.ledger.external_impulse[c] += node.v[3] * g[c] * dt;
+        state.ledger.external_work += 0.5 * node.v[3] * g[c] * dt * (node.v[c] + node.f[c]);
+      }
+}
+
+// From {velocity at the beginning, mass | velocity at the end} to {velocity at the end, 0 | acceleration, 0}, which is what
+// (33) and (34) interpolate. The fourth components must vanish: particle records carry mass and 1 there.
+void accelerations(Workspace& workspace, double dt) {
+  const double inverse = 1.0 / dt;
+  for_nodes(workspace, [&](NodeRecord& node) {
+    for (int c = 0; c < 3; ++c) {
+      const double end = node.f[c];
+      node.f[c] = (end - node.v[c]) * inverse;
+      node.v[c] = end;
+    }
+    node.v[3] = node.f[3] = 0;
+  });
+}
+
+void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt) {
+  const int shape = static_cast<int>(model.numerics.shape_function);
+  const std::int32_t count = static_cast<std::int32_t>(workspace.pencils.size());
+#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 1) if (count > 1)
+  for (std::int32_t p = 0; p < count; ++p)
+    for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
+      const GroupLinks& link = workspace.links[l];
+      workspace.kernels->update_particles[shape](kernel_group(model, state, workspace, link, dt),
+                                                 kernel_particles(state.bodies[link.body]), workspace.move_sums[l]);
+    }
+  for (BodyState& body : state.bodies) body.totals.maximum_speed = 0;
+  for (std::size_t l = 0; l < workspace.links.size(); ++l) {
+    BodyState& body = state.bodies[workspace.links[l].body];
+    const MoveSums& sums = workspace.move_sums[l];
+    body.drifted = body.drifted || sums.outside;
+    const double speed = std::sqrt(sums.speed_squared);
+    body.totals.maximum_speed = std::max(body.totals.maximum_speed, speed);
+  }
+  for (BodyState& body : state.bodies)
+    body.totals.maximum_speed_ever = std::max(body.totals.maximum_speed_ever, body.totals.maximum_speed);
+}
+
+}  // namespace
+
+void prepare_state(const Model& model, State& state, Workspace& workspace) {
+  workspace.kernels = &kernel_table();
+  workspace.materials.clear();
+  for (const Body& body : model.bodies)
+    workspace.materials.push_back(kernel_material(model.materials[body.material], model.grid.cell_size));
+  bool fresh = false;
+  for (const BodyState& body : state.bodies) fresh = fresh || (body.groups.empty() && body.particles > 0);
+  if (fresh) bin_particles(model, state, workspace, true);
+  link_grid(model, state, workspace);
+  if (state.stable_time_step == 0) state.stable_time_step = initial_time_step(model, state, workspace);
+}
+
+}  // namespace ogive

@@ -1,0 +1,56 @@
+// The stable time step.
+#include "time_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "error.hpp"
+
+namespace ogive {
+namespace {
+
+double limit(const Model& model, const State& state, double fastest) {
+  double dt = model.numerics.maximum_time_step;
+  if (fastest > 0) dt = std::min(dt, model.numerics.time_step_factor * model.grid.cell_size / fastest);
+  // A run whose clock no longer moves would never end.
+  if (!(dt > 0) || !std::isfinite(dt) || !(state.time + dt > state.time))
+    throw Error(ErrorKind::Numerical, "time step has collapsed to " + std::to_string(dt) + " at time " +
+                                          std::to_string(state.time) + ": the fastest wave plus particle runs at " +
+                                          std::to_string(fastest));
+  return dt;
+}
+
+}  // namespace
+
+double stable_time_step(const Model& model, const State& state, const Workspace& workspace) {
+  double fastest = 0;
+  for (std::size_t l = 0; l < workspace.links.size(); ++l)
+    fastest = std::max(fastest, std::sqrt(workspace.stress_sums[l].wave_speed_squared) +
+                                    std::sqrt(workspace.move_sums[l].speed_squared));
+  return limit(model, state, fastest);
+}
+
+double initial_time_step(const Model& model, State& state, const Workspace& workspace) {
+  double fastest = 0;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    BodyState& body = state.bodies[b];
+    const KernelMaterial& material = workspace.materials[b];
+    const Material& rules = model.material_of(static_cast<int>(b));
+    const double bulk = rules.eos == EquationOfState::MieGruneisen ? material.rho_c0_squared : material.K;
+    double wave = std::sqrt((bulk + 4.0 / 3.0 * material.G) / material.density);
+    wave += 2.0 * material.viscosity_linear * wave;  // bulk viscosity slows the step once something is compressed
+    double speed_squared = 0;
+    for (const Group& group : body.groups)
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+        const double* v = &body.velocity[4 * p];
+        speed_squared = std::max(speed_squared, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      }
+    body.totals.maximum_speed = std::sqrt(speed_squared);
+    body.totals.maximum_speed_ever = std::max(body.totals.maximum_speed_ever, body.totals.maximum_speed);
+    fastest = std::max(fastest, wave + body.totals.maximum_speed);
+  }
+  return limit(model, state, fastest);
+}
+
+}  // namespace ogive

@@ -1,0 +1,91 @@
+// The kernels over a group of particles, compiled once per instruction set and chosen at run time.
+//
+// These plain structs are all that crosses between the engine and the kernels. A kernel works on the tile of a group: the
+// nodes of its block, one layer below and two above, copied from and added to the slots of the 27 blocks around.
+#pragma once
+
+#include <cstdint>
+
+namespace ogive {
+
+// A grid node of one velocity field. Between mapping and update: v = {momentum or velocity, mass}, f = {force, -};
+// for the particle update: v = {velocity, 0}, f = {acceleration, 0}.
+struct alignas(64) NodeRecord {
+  double v[4];
+  double f[4];
+};
+
+// Kept only in blocks that two fields reach: {sum of m_p grad N, sum of V_p N}.
+struct alignas(32) ContactRecord {
+  double gradient[3];
+  double volume;
+};
+
+// Particles of one group and the nodes they touch.
+struct KernelGroup {
+  std::int64_t begin, end;        // end with padding
+  double corner[3];               // position of the tile's first node
+  double inverse_cell;            // 1 / h
+  double time_step;
+  double inverse_density;         // 1 / initial density
+  std::int32_t tile_low[3], tile_high[3];  // nodes of the tile in use, inclusive
+  NodeRecord* nodes[27];          // node records of the neighbour blocks, x fastest, null where none is touched
+  ContactRecord* contact[27];     // likewise; null where no second field is
+  double bound_low[4], bound_high[4];      // where particles may be until the next binning
+};
+
+struct KernelParticles {
+  double* position;
+  double* velocity;
+  double* stress[6];
+  double* volume_ratio;
+  double* energy;
+  double* plastic_strain;
+  double* yield_stress;
+  double* temperature;
+  double* deformation[9];
+};
+
+struct KernelMaterial {
+  double density, K, G, lambda;
+  double A, B, n;
+  double rate_coefficient, inverse_reference_rate;
+  double thermal_exponent, room_temperature, inverse_melt_range, heating;  // heating = taylor_quinney / (density cp)
+  double rho_c0_squared, slope, gruneisen;
+  double failure_strain;  // infinity: none
+  double viscosity_linear, viscosity_quadratic;
+  double cell_size;
+  bool thermal, rate_dependent, viscous;
+};
+
+// What a group's stress update reports.
+struct StressSums {
+  double wave_speed_squared;    // largest c^2
+  double plastic_dissipation, viscous_dissipation;
+  double failure_loss, failed_mass;
+  std::int64_t failed_particles;
+  std::int64_t bad_particle;    // first particle with a volume that is not positive and finite, -1: none
+};
+
+struct MoveSums {
+  double speed_squared;         // largest |v|^2
+  bool outside;                 // a particle is outside its bounds (or not a number)
+};
+
+struct KernelTable {
+  const char* name;
+  // Nodal mass and momentum, Eqs. (27) and (28), by shape function.
+  void (*map_momentum[2])(const KernelGroup&, const KernelParticles&);
+  // Sums for the normals, Eq. (9), and the fill of nodes.
+  void (*map_contact[2])(const KernelGroup&, const KernelParticles&);
+  // Eqs. (29)-(31) by shape function, strength and equation of state.
+  void (*update_stress[2][4][2])(const KernelGroup&, const KernelParticles&, const KernelMaterial&, StressSums&);
+  // Eqs. (33), (34).
+  void (*update_particles[2])(const KernelGroup&, const KernelParticles&, MoveSums&);
+};
+
+// The best table for this processor, or the one that the environment variable OGIVE_ISA names (x86-64-v2, x86-64-v3,
+// x86-64-v4, generic) where the processor can run it.
+const KernelTable& kernel_table();
+
+}  // namespace ogive

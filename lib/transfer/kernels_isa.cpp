@@ -1,0 +1,26 @@
+// The kernel table of one instruction set: the build compiles this file once for each, with OGIVE_ISA_NAMESPACE naming it.
+#include "transfer/stress.hpp"
+
+namespace ogive {
+namespace OGIVE_ISA_NAMESPACE {
+
+#define OGIVE_TEXT_OF(name) #name
+#define OGIVE_TEXT(name) OGIVE_TEXT_OF(name)
+#define OGIVE_LAWS(Shape)                                                                                           \
+  {{update_stress<Shape, strength_elastic, eos_linear>, update_stress<Shape, strength_elastic, eos_mie_gruneisen>}, \
+   {update_stress<Shape, strength_neo_hookean, eos_linear>, nullptr},                                               \
+   {update_stress<Shape, strength_j2_power, eos_linear>, update_stress<Shape, strength_j2_power, eos_mie_gruneisen>}, \
+   {update_stress<Shape, strength_johnson_cook, eos_linear>,                                                        \
+    update_stress<Shape, strength_johnson_cook, eos_mie_gruneisen>}}
+
+extern const KernelTable table;
+const KernelTable table = {
+    OGIVE_TEXT(OGIVE_ISA_NAMESPACE),
+    {map_momentum<LinearShape>, map_momentum<QuadraticBSplineShape>},
+    {map_contact<LinearShape>, map_contact<QuadraticBSplineShape>},
+    {OGIVE_LAWS(LinearShape), OGIVE_LAWS(QuadraticBSplineShape)},
+    {update_particles<LinearShape>, update_particles<QuadraticBSplineShape>},
+};
+
+}  // namespace OGIVE_ISA_NAMESPACE
+}  // namespace ogive

@@ -1,0 +1,125 @@
+// Velocity gradient to strain increment (29), density (30), stress, and internal force (31) in one pass over a group:
+// Huang et al. 2010, section 4, steps 4 and 5.
+#pragma once
+
+#include "materials/law.hpp"
+#include "transfer/transfer.hpp"
+
+namespace ogive {
+namespace OGIVE_ISA_NAMESPACE {
+
+template <class Shape, int strength, int eos>
+void update_stress(const KernelGroup& group, const KernelParticles& particles, const KernelMaterial& material,
+                   StressSums& sums) {
+  constexpr bool plastic = strength == strength_j2_power || strength == strength_johnson_cook;
+  constexpr bool hyperelastic = strength == strength_neo_hookean;
+  alignas(64) Record velocity[tile_size];
+  alignas(64) Record force[tile_size];
+  for_tile_nodes(group, [&](int t, int block, int node) {
+    velocity[t] = load_aligned<Record>(group.nodes[block][node].v);
+    force[t] = Record{};
+  });
+
+  Lanes fastest{}, plastic_work{}, viscous_work{};
+  sums.failure_loss = sums.failed_mass = 0;
+  sums.failed_particles = 0;
+  sums.bad_particle = -1;
+  Weights<Shape> weights;
+  for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
+    Lanes x, y, z, mass;
+    load_records(particles.position + 4 * p, x, y, z, mass);
+    Weights<Shape>::fill(weights, group, x, y, z, true);
+
+    // Rows of records to lanes: after the transposes gradient[j][i] holds dv_i/dx_j of four particles.
+    Record gradient[3][lane_count];
+    for (int lane = 0; lane < lane_count; ++lane)
+      gather_gradient<Shape>(weights, lane, velocity + static_cast<std::int64_t>(weights.first[lane]),
+                             gradient[0][lane], gradient[1][lane], gradient[2][lane]);
+    LawState<Lanes> s;
+    s.temperature = Lanes{};
+    s.dt = broadcast<Lanes>(group.time_step);
+    for (int j = 0; j < 3; ++j) {
+      transpose(gradient[j][0], gradient[j][1], gradient[j][2], gradient[j][3]);
+      for (int i = 0; i < 3; ++i) s.L[i][j] = gradient[j][i] * group.time_step;
+    }
+
+    if constexpr (!hyperelastic)
+      s.stress = {load_aligned<Lanes>(particles.stress[0] + p), load_aligned<Lanes>(particles.stress[1] + p),
+                  load_aligned<Lanes>(particles.stress[2] + p), load_aligned<Lanes>(particles.stress[3] + p),
+                  load_aligned<Lanes>(particles.stress[4] + p), load_aligned<Lanes>(particles.stress[5] + p)};
+    s.volume_ratio = load_aligned<Lanes>(particles.volume_ratio + p);
+    s.energy = load_aligned<Lanes>(particles.energy + p);
+    if constexpr (plastic) {
+      s.plastic_strain = load_aligned<Lanes>(particles.plastic_strain + p);
+      s.yield_stress = load_aligned<Lanes>(particles.yield_stress + p);
+      if (strength == strength_johnson_cook && material.thermal)
+        s.temperature = load_aligned<Lanes>(particles.temperature + p);
+    }
+    if constexpr (hyperelastic)
+      for (int c = 0; c < 9; ++c) s.F[c / 3][c % 3] = load_aligned<Lanes>(particles.deformation[c] + p);
+
+    update_law<strength, eos>(material, s);
+
+    store_aligned(particles.stress[0] + p, s.stress.xx);
+    store_aligned(particles.stress[1] + p, s.stress.yy);
+    store_aligned(particles.stress[2] + p, s.stress.zz);
+    store_aligned(particles.stress[3] + p, s.stress.yz);
+    store_aligned(particles.stress[4] + p, s.stress.xz);
+    store_aligned(particles.stress[5] + p, s.stress.xy);
+    store_aligned(particles.volume_ratio + p, s.volume_ratio);
+    store_aligned(particles.energy + p, s.energy);
+    if constexpr (hyperelastic)
+      for (int c = 0; c < 9; ++c) store_aligned(particles.deformation[c] + p, s.F[c / 3][c % 3]);
+
+    const Lanes initial_volume = mass * group.inverse_density;
+    if constexpr (plastic) {
+      if (s.plastic_changed) {
+        store_aligned(particles.plastic_strain + p, s.plastic_strain);
+        store_aligned(particles.yield_stress + p, s.yield_stress);
+        if (strength == strength_johnson_cook && material.thermal)
+          store_aligned(particles.temperature + p, s.temperature);
+        plastic_work += initial_volume * s.plastic_work;
+        if (any(s.newly_failed))
+          for (int lane = 0; lane < lane_count; ++lane)
+            if (s.newly_failed[lane] && mass[lane] > 0) {
+              ++sums.failed_particles;
+              sums.failed_mass += mass[lane];
+              sums.failure_loss += initial_volume[lane] * s.failure_loss[lane];
+            }
+      }
+    }
+    viscous_work += initial_volume * s.viscous_work;
+    fastest = max(s.wave_speed_squared, fastest);
+    // Also catches what is not a number.
+    if (!all((s.volume_ratio > 1e-6) & (s.volume_ratio < 1e6) & (s.wave_speed_squared < 1e300)) && sums.bad_particle < 0)
+      for (int lane = lane_count - 1; lane >= 0; --lane)
+        if (!(s.volume_ratio[lane] > 1e-6 && s.volume_ratio[lane] < 1e6 && s.wave_speed_squared[lane] < 1e300))
+          sums.bad_particle = p + lane;
+
+    // Eq. (31): -V sigma grad N.
+    const Lanes volume = -initial_volume * s.volume_ratio;
+    Lanes X[4] = {volume * (s.stress.xx - s.viscous_pressure), volume * s.stress.xy, volume * s.stress.xz, Lanes{}};
+    Lanes Y[4] = {X[1], volume * (s.stress.yy - s.viscous_pressure), volume * s.stress.yz, Lanes{}};
+    Lanes Z[4] = {X[2], Y[2], volume * (s.stress.zz - s.viscous_pressure), Lanes{}};
+    transpose(X[0], X[1], X[2], X[3]);
+    transpose(Y[0], Y[1], Y[2], Y[3]);
+    transpose(Z[0], Z[1], Z[2], Z[3]);
+    for (int lane = 0; lane < lane_count; ++lane)
+      scatter_gradient<Shape>(weights, lane, X[lane], Y[lane], Z[lane], force);
+  }
+
+  for_tile_nodes(group, [&](int t, int block, int node) {
+    double* f = group.nodes[block][node].f;
+    store_aligned(f, load_aligned<Record>(f) + force[t]);
+  });
+  sums.wave_speed_squared = 0;
+  sums.plastic_dissipation = sums.viscous_dissipation = 0;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (fastest[lane] > sums.wave_speed_squared) sums.wave_speed_squared = fastest[lane];
+    sums.plastic_dissipation += plastic_work[lane];
+    sums.viscous_dissipation += viscous_work[lane];
+  }
+}
+
+}  // namespace OGIVE_ISA_NAMESPACE
+}  // namespace ogive
