@@ -3,7 +3,8 @@
 
   plot_history.py RUN [RUN ...] [-o history.png] [--body rod] [--reference experiment=455]
 
-RUN is a run's directory or its history.csv. Of several runs the speeds are drawn together and the energies of the first.
+RUN is a run's directory or its history.csv. Of several runs the speeds are drawn together, and the energies of the
+first.
 """
 
 import argparse
