@@ -195,7 +195,7 @@ void ogive_voxelise_def_init(ogive_voxelise_def* def, size_t size) {
   init(def, size, defaults);
 }
 
-ogive_status ogive_mesh_voxelise(ogive_mesh* mesh, const ogive_voxelise_def* def, int64_t* count, double* xyz,
+ogive_status ogive_mesh_voxelise(const ogive_mesh* mesh, const ogive_voxelise_def* def, int64_t* count, double* xyz,
                                  double* volume) {
   return run(mesh, [&] {
     expect_size(def, "def");

@@ -107,8 +107,7 @@ struct Crossing {
   uint8_t lines;
 };
 
-// Positions in lattice coordinates; `order` names the lattice axes that play x, y and z here, lines running along the
-// last.
+// Positions in lattice coordinates; `order` names the lattice axes that play x, y and z here. Lines run along the last.
 class Filler {
  public:
   Filler(const std::vector<Vec3>& vertices, const std::vector<Corners>& facets, const std::array<Axis, 3>& axes,
@@ -133,10 +132,9 @@ class Filler {
   template <class Take>
   void fill(Take take) {
     for (const Corners& f : facets_) cross(vertices_[f[0]], vertices_[f[1]], vertices_[f[2]]);
-    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
-      return a.line != b.line ? a.line < b.line
-                              : a.k < b.k;  // crossings at one k act together: their order does not matter
-    });
+    // Crossings at one centre act together: their order does not matter.
+    std::sort(crossings_.begin(), crossings_.end(),
+              [](const Crossing& a, const Crossing& b) { return a.line != b.line ? a.line < b.line : a.k < b.k; });
     std::array<int, 3> sum{};
     for (size_t n = 0; n < crossings_.size(); ++n) {
       const Crossing& now = crossings_[n];
@@ -160,8 +158,7 @@ class Filler {
   void cross(const Vec3& a, const Vec3& b, const Vec3& c) {
     const int turn = turn_seen_from_z(a, b, c);
     if (turn == 0) {
-      // Parallel to the lines: the moved lines miss it, and lie on both sides of it. That leaves its edges along the
-      // lines.
+      // Parallel to the lines: the moved lines miss it, on both sides. That leaves its edges along the lines.
       mark_edge_along_lines(a, b);
       mark_edge_along_lines(b, c);
       mark_edge_along_lines(c, a);
@@ -252,11 +249,14 @@ std::vector<double> voxelise(const Surface& surface, const ogive_voxelise_def& d
     axes[d] = {origin[d], def.spacing[d]};
     const auto [low, high] = std::minmax_element(vertices.begin(), vertices.end(),
                                                  [d](const Vec3& a, const Vec3& b) { return a[d] < b[d]; });
+    // Also of the lattice origin itself: cells must stay wider than the rounding of their centres.
     const double farthest =
-        std::max(std::abs((*low)[d] - origin[d]), std::abs((*high)[d] - origin[d])) / def.spacing[d];
+        std::max({std::abs((*low)[d] - origin[d]), std::abs((*high)[d] - origin[d]), std::abs(origin[d])}) /
+        def.spacing[d];
     if (!(farthest <= kFarthestCell)) {
-      refuse_argument("spacing[" + std::to_string(d) + "] = " + text_of(def.spacing[d]) + ": the mesh reaches " +
-                      text_of(farthest) + " cells from the lattice origin; expected at most 1e9");
+      refuse_argument("spacing[" + std::to_string(d) + "] = " + text_of(def.spacing[d]) + ": the mesh is " +
+                      text_of(farthest) +
+                      " cells from the lattice origin, or that from the mesh's; expected at most 1e9");
     }
     cells[d] = ((*high)[d] - (*low)[d]) / def.spacing[d] + 1;
     all_cells *= cells[d];

@@ -16,9 +16,9 @@ Exact volume of the solid, with b = R - r:
 
 (the bracket is the integral of rho^2 over the nose; sqrt(R^2 - h^2) = b). With d = 12.9, L = 88.9, C = 3: V = 10352.46.
 
-All vertices lie on the solid's surface, so the mesh encloses a little less: about (2 pi / n)^2 / 6 less for n facets around.
-Nothing compensates for that; take enough facets. The mesh is symmetric about the planes x = 0 and y = 0 to the last bit,
-vertices and triangles alike, because a half model of it must be exactly half.
+All vertices lie on the solid's surface, so the mesh encloses a little less: (2 pi / n)^2 / 6 of it for n facets around.
+Nothing compensates for that; take enough facets. The mesh is symmetric about the planes x = 0 and y = 0 to the last
+bit, vertices and triangles alike, because a half model of it must be exactly half.
 
   make_ogive_stl.py rod.stl --diameter 12.9 --length 88.9 --crh 3
 """
@@ -75,7 +75,7 @@ def triangles(diameter, length, crh, facets, nose_segments, body_segments):
         n = (k + 1) % facets
         result.append((tip, at[0][k], at[0][n]))
         for front, back in zip(at, at[1:]):
-            # Rounding leaves the four corners not quite in a plane: the diagonal must be mirrored as well.
+            # Rounding leaves the four corners not quite in one plane, so the diagonals must be mirror images too.
             if k * 4 // facets % 2 == 0:
                 result += [(front[k], back[k], back[n]), (front[k], back[n], front[n])]
             else:
@@ -114,7 +114,7 @@ def main():
     parser.add_argument("output", help="STL file to write")
     parser.add_argument("--diameter", type=float, required=True, help="of the body")
     parser.add_argument("--length", type=float, required=True, help="over all")
-    parser.add_argument("--crh", type=float, required=True, help="radius of the ogive's arc divided by the diameter, >= 0.5")
+    parser.add_argument("--crh", type=float, required=True, help="radius of the ogive's arc / diameter, >= 0.5")
     parser.add_argument("--facets", type=int, default=144, help="around, a multiple of 4 (default %(default)s)")
     parser.add_argument("--nose-segments", type=int, default=48, help="along the nose (default %(default)s)")
     parser.add_argument("--body-segments", type=int, default=16, help="along the body (default %(default)s)")

@@ -137,6 +137,7 @@ TEST(MeshInterface, BadValuesAreNamedWithWhatWasExpected) {
   expect([](auto& d) { set(d.spacing, {1e-4, 1e-4, 1e-4}); }, {"spacing = (0.0001,", "lattice cells", "at most 1e11"});
   expect([](auto& d) { d.spacing[1] = 1e-10; }, {"spacing[1] = 1e-10", "cells from the lattice origin"});
   expect([](auto& d) { set(d.lattice_origin, {1e12, 0, 0}); }, {"cells from the lattice origin"});
+  expect([](auto& d) { set(d.lattice_origin, {0, 1e300, 0}); }, {"lattice_origin[1] = 1e+300"});
   expect(
       [](auto& d) {
         set(d.spacing, {3, 3, 3});

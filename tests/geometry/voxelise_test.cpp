@@ -32,7 +32,7 @@ ogive_voxelise_def whole_lattice(double spacing) {
 }
 
 // How often the surface winds round a point: the sum of the solid angles of its facets (van Oosterom & Strackee 1983).
-// Independent of the library's way of deciding, and slow.
+// This is independent of the library's way of deciding, and slow.
 double winding(const Facets& facets, const Vec3& p) {
   double angle = 0;
   for (const auto& f : facets.corners) {
@@ -336,6 +336,16 @@ TEST(Voxelise, OneParticleIsEnoughAndNoneIsAnError) {
   EXPECT_EQ(one.volume[0], 1);
   EXPECT_TRUE(mesh.fill(lattice(2.1)).position.empty());
   EXPECT_EQ(lacks(mesh.message(), {"spacing = (2.1, 2.1, 2.1)", "no lattice centre lies inside", "1 x 1 x 1"}), "");
+}
+
+TEST(Voxelise, ALatticeThatRoundingWouldBlurIsRefused) {
+  Mesh mesh(box({1e12, 0, 0}, {1e12 + 1, 1, 1}));
+  ASSERT_EQ(mesh.check(), OGIVE_OK) << mesh.message();
+  ogive_voxelise_def def = lattice(1e-3);
+  set(def.lattice_origin, {1e12, 0, 0});
+  EXPECT_TRUE(mesh.fill(def).position.empty());
+  EXPECT_EQ(lacks(mesh.message(), {"spacing[0] = 0.001", "cells from the lattice origin, or that from the mesh's"}),
+            "");
 }
 
 TEST(Voxelise, TheSameQuestionGetsTheSameAnswerToTheLastBit) {
