@@ -67,7 +67,7 @@ OGIVE_API ogive_status ogive_mesh_set_facets(ogive_mesh* mesh, int64_t vertex_co
 /* --------------------------------------------------------------------------------------------------------- checking */
 
 /* Makes the surface ready to be filled, or refuses it with OGIVE_ERROR_FORMAT: all findings are in the report; the
- * first reason, with its place, is in the message. OGIVE_ERROR_STATE if nothing was read. A second call changes nothing.
+ * first reason, with its place, is the message. A second call changes nothing. OGIVE_ERROR_STATE if nothing was read.
  *   repaired    facets with a corner twice and facets given twice are dropped; a facet whose three corners lie exactly
  *               on one line is removed by cutting its neighbour at the corner between; facets that face the other way
  *               than their neighbours, and whole surfaces turned inside out, are turned
@@ -115,7 +115,7 @@ OGIVE_API ogive_status ogive_mesh_info_get(const ogive_mesh* mesh, ogive_mesh_in
  *   centre = lattice_origin + (i + 1/2) spacing[0] X + (j + 1/2) spacing[1] Y + (k + 1/2) spacing[2] Z
  * for whole numbers i, j, k, so that a mesh that is symmetric about coordinate planes gets particles that are symmetric
  * to the last bit. A centre exactly on the surface belongs to the solid. Each particle has the same volume: the
- * enclosed volume divided by their number. Then the whole is rotated and moved to its place, for mesh coordinates x, y, z:
+ * enclosed volume divided by their number. Then the whole is rotated and moved: for mesh coordinates x, y, z
  *   world = position + x X' + y Y' + z Z'
  *
  * Both rotations come from an axis (where z points, of any length) and a reference:
