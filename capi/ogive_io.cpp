@@ -292,8 +292,17 @@ ogive_status ogive_file_info(const char* path, char* text, size_t capacity, size
       const auto* count = archive.attribute<std::int64_t>(group, "particles");
       if (!group.empty() && name && count) lines += "body " + *name + ": " + std::to_string(*count) + " particles\n";
     }
-    for (const auto& array : archive.arrays())
-      lines += "  " + array.path + "  " + type_name(array.type) + " " + ogive::io::shape_text(array.shape) + "\n";
+    // A checkpoint has hundreds of single numbers: only what is an array worth the name gets a line.
+    constexpr std::uint64_t kListed = 16;
+    std::size_t small = 0;
+    for (const auto& array : archive.arrays()) {
+      if (array.count < kListed && array.shape.size() == 1)
+        ++small;
+      else
+        lines += "  " + array.path + "  " + type_name(array.type) + " " + ogive::io::shape_text(array.shape) + "\n";
+    }
+    if (small > 0)
+      lines += "  and " + std::to_string(small) + " of fewer than " + std::to_string(kListed) + " elements\n";
   });
 }
 

@@ -94,10 +94,12 @@ def particle_files(inputs):
 
 
 def open_particles(name):
+    if not os.path.exists(name):
+        raise Refused(f"{name}: no such file")
     try:
-        file = h5py.File(name, "r", locking=False)
-    except TypeError:  # an h5py that does not know `locking`
         file = h5py.File(name, "r")
+    except OSError as problem:
+        raise Refused(f"{name}: {problem}") from None
     kind = file.attrs.get("format", b"")
     if (kind.decode() if isinstance(kind, bytes) else kind) != "ogive-particles":
         raise Refused(f"{name}: not a particle file of Ogive")
@@ -233,7 +235,7 @@ def main():
             draw(panel, instants[i], across, up, mirror, colours, norm)
             panel.set(xlim=limits[0], ylim=limits[1], aspect="equal")
             speed = [body.speed for body in instants[i] if body.name == fastest]
-            panel.set_title(f"t = {chosen[i][0] * time_factor:.4g} {time_unit}"
+            panel.set_title(f"t = {chosen[i][0] * time_factor:.3g} {time_unit}"
                             + (f", {fastest} {speed[0]:.0f} {units.speed}" if speed else ""))
             panel.set_xlabel(label(AXES[across], units.length))
         for panel in panels[:, 0]:

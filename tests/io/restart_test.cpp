@@ -29,6 +29,13 @@ struct Settings {
   std::int32_t method;
 };
 
+std::string text_of(const Settings& settings) {
+  const char* methods[] = {"SingleField", "HuangFirst", "HuangSecond"};
+  return std::string(settings.shape == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline") + methods[settings.method] +
+         std::to_string(settings.threads) + "Threads";
+}
+void PrintTo(const Settings& settings, std::ostream* out) { *out << text_of(settings); }
+
 // A steel ball strikes a Johnson-Cook aluminium plate that can fail: contact, friction, heat, failure, a symmetry
 // plane, and free faces that particles can leave by.
 void build(World& world, const Settings& settings) {
@@ -220,19 +227,13 @@ TEST_P(Restart, WithAnotherNumberOfThreadsContinuesToTheSameBits) {
   expect_same_bits(world, loaded);
 }
 
-std::string name_of(const testing::TestParamInfo<Settings>& info) {
-  const char* methods[] = {"SingleField", "HuangFirst", "HuangSecond"};
-  return std::string(info.param.shape == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline") + methods[info.param.method] +
-         std::to_string(info.param.threads) + "Threads";
-}
-
 INSTANTIATE_TEST_SUITE_P(Cases, Restart,
                          testing::Values(Settings{OGIVE_SHAPE_LINEAR, 1, OGIVE_CONTACT_HUANG_SECOND},
                                          Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_FIRST},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 1, OGIVE_CONTACT_HUANG_SECOND},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_HUANG_SECOND},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_SINGLE_FIELD}),
-                         name_of);
+                         [](const auto& info) { return text_of(info.param); });
 
 TEST(Checkpoint, OfTheSameStateIsEqualByteForByteAfterARestart) {
   const scratch::Directory directory;

@@ -186,6 +186,7 @@ TEST(FileText, VerifyAndInfoTellWhatAFileIs) {
   EXPECT_TRUE(contains(info, path + ": Ogive checkpoint, format version 1, written by Ogive 9.8.7, ")) << info;
   EXPECT_TRUE(contains(info, "time 0.5, step 12, 0 particles\n")) << info;
   EXPECT_TRUE(contains(info, "  state/rod/position  float64 3000\n")) << info;
+  EXPECT_TRUE(contains(info, "  and 9 of fewer than 16 elements\n")) << info;
 
   ogive_world bodies = world_with_bodies();
   ASSERT_EQ(ogive_particles_write(&bodies, (directory / "p.h5").c_str()), OGIVE_OK);
