@@ -2,6 +2,7 @@
 #include "files.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,6 +40,12 @@ int write_all(int descriptor, const char* data, size_t size) {
   return 0;
 }
 
+/// Two runs must not write one history; the lock goes with the process.
+void lock_or_refuse(int descriptor, const std::filesystem::path& file) {
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  throw Failure(kExitFile, file.string() + ": is being written by another run; give another directory with --output");
+}
+
 void flush_directory_of(const std::filesystem::path& file) {
   const std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -50,7 +57,7 @@ void flush_directory_of(const std::filesystem::path& file) {
 }  // namespace
 
 void write_whole_file(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path temporary = file.string() + ".part-" + std::to_string(::getpid());
+  const std::filesystem::path temporary = file.string() + ".tmp-" + std::to_string(::getpid());
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(file, "written");
   const bool written = write_all(descriptor, text.data(), text.size()) == 0 && ::fsync(descriptor) == 0;
@@ -71,8 +78,10 @@ AppendedFile::~AppendedFile() {
 
 void AppendedFile::create(const std::filesystem::path& file) {
   file_ = file;
-  descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(file, "created");
+  lock_or_refuse(descriptor_, file);
+  if (::ftruncate(descriptor_, 0) != 0) fail(file, "created");
   flush_directory_of(file);
   size_ = 0;
   sum_ = kSumStart;
@@ -82,6 +91,7 @@ void AppendedFile::resume(const std::filesystem::path& file, int64_t size, uint6
   file_ = file;
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0) fail(file, "continued");
+  lock_or_refuse(descriptor_, file);
   std::vector<char> block(1 << 16);
   uint64_t found_sum = kSumStart;
   int64_t found = 0;

@@ -39,12 +39,19 @@ bool is_run_file(const std::string& name) {
   return names.count(name) || is_particle_file(name) || has_form(name, "checkpoint-", ".h5");
 }
 
+/// What a kill in the middle of writing leaves: a run file's name with .tmp-<process>.
+bool is_unfinished_file(const std::string& name) {
+  const size_t at = name.rfind(".tmp-");
+  return at != std::string::npos && is_run_file(name.substr(0, at));
+}
+
 /// Names of a directory's files that a run wrote; none if there is no directory.
 std::vector<std::string> run_files_in(const std::filesystem::path& directory) {
   std::vector<std::string> names;
   std::error_code problem;
   for (const auto& entry : std::filesystem::directory_iterator(directory, problem)) {
-    if (is_run_file(entry.path().filename().string())) names.push_back(entry.path().filename().string());
+    const std::string name = entry.path().filename().string();
+    if (is_run_file(name) || is_unfinished_file(name)) names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -203,7 +210,8 @@ void rewind_directory(const std::filesystem::path& directory, const DriverState&
   const std::set<std::string> kept(state.particle_files.begin(), state.particle_files.end());
   for (const std::string& name : run_files_in(directory)) {
     const bool later_particles = is_particle_file(name) && !kept.count(name);
-    if (later_particles || name == kSummary || name == kFailedState) remove_file(directory / name);
+    const bool stale = later_particles || name == kSummary || name == kFailedState || is_unfinished_file(name);
+    if (stale) remove_file(directory / name);
   }
 }
 
@@ -288,9 +296,12 @@ double Output::result(const ogive_world* world, const ResultScene& wanted) const
   // residual_velocity, the only kind so far: 0 once the body does not go forward any more.
   const ogive_body_result body = body_result_of(world, find_body(world, wanted.body));
   std::array<double, 3> velocity{body.velocity[0], body.velocity[1], body.velocity[2]};
+  double speed = body.speed;
   const auto last = state_.last_velocity.find(wanted.body);
-  if (body.particles == 0 && last != state_.last_velocity.end()) velocity = last->second;
-  const double speed = std::hypot(velocity[0], velocity[1], velocity[2]);
+  if (body.particles == 0 && last != state_.last_velocity.end()) {
+    velocity = last->second;
+    speed = std::hypot(velocity[0], velocity[1], velocity[2]);
+  }
   const auto initial = state_.initial_velocity.find(wanted.body);
   if (initial == state_.initial_velocity.end() || body.initial_speed == 0) return speed;
   double forward = 0;

@@ -199,7 +199,7 @@ class Simulation {
 
 void print_beginning(const Scene& scene, const ogive_world* world, const std::filesystem::path& directory) {
   const ogive_progress progress = progress_of(world);
-  std::printf("%s: %s particles in %d bodies, %d threads, to time %s %s, into %s\n", scene.title.c_str(),
+  std::printf("%s: %s particles in %d bodies, threads %d, to time %s %s, into %s\n", scene.title.c_str(),
               grouped(progress.particles).c_str(), ogive_body_count(world), threads_in_use(scene.numerics),
               brief(scene.stop.time).c_str(), scene.units.time.c_str(), directory.c_str());
   std::fflush(stdout);

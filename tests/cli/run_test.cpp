@@ -1,0 +1,170 @@
+// A small scene run to its end: what it leaves, what it refuses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace cli_test;
+
+std::string scene_file() { return (std::filesystem::path(OGIVE_CLI_DATA) / "two_boxes.toml").string(); }
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream stream(line);
+  for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+TEST(Run, leaves_valid_files) {
+  const ScratchDirectory scratch;
+  const Outcome outcome = run_program(scratch.path(), {"run", scene_file(), "--threads", "2"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_NE(outcome.output.find("residual velocity of left: "), std::string::npos);
+  EXPECT_NE(outcome.output.find(" m/s\n"), std::string::npos);
+
+  const std::filesystem::path results = scratch / "two_boxes-out";
+  const std::vector<std::string> names = names_in(results);
+  for (const std::string& name : names) {
+    if (name.substr(name.size() - 3) != ".h5") continue;
+    const Outcome info = run_program(results, {"info", name, "--verify"});
+    EXPECT_EQ(info.exit_code, 0) << info.errors;
+    EXPECT_NE(info.output, "");
+  }
+  EXPECT_EQ(count_of(testing::PrintToString(names), "checkpoint-"), 3U) << testing::PrintToString(names);
+  for (const char* name :
+       {"history.csv", "summary.json", "particles.xdmf", "particles-00000.h5", "particles-00003.h5"}) {
+    EXPECT_TRUE(std::filesystem::exists(results / name)) << name;
+  }
+  EXPECT_EQ(count_of(testing::PrintToString(names), ".part"), 0U);
+  const std::string series = read_file(results / "particles.xdmf");
+  EXPECT_NE(series.find("particles-00000.h5"), std::string::npos);
+  EXPECT_NE(series.find("particles-00003.h5"), std::string::npos);
+
+  std::istringstream history(read_file(results / "history.csv"));
+  std::string line;
+  std::getline(history, line);
+  const std::vector<std::string> heading = fields_of(line);
+  const std::vector<std::string> known = {"step",
+                                          "time",
+                                          "kinetic",
+                                          "residual_relative",
+                                          "left.speed",
+                                          "left.centre_x",
+                                          "right.failed_particles",
+                                          "left.mass",
+                                          "right.momentum_x",
+                                          "right.contact_force_x"};
+  for (const std::string& name : known) {
+    EXPECT_NE(std::find(heading.begin(), heading.end(), name), heading.end()) << name;
+  }
+  std::vector<double> times;
+  while (std::getline(history, line)) {
+    const std::vector<std::string> fields = fields_of(line);
+    ASSERT_EQ(fields.size(), heading.size());
+    for (const std::string& field : fields) EXPECT_TRUE(std::isfinite(std::stod(field))) << field;
+    times.push_back(std::stod(fields[1]));
+  }
+  ASSERT_EQ(times.size(), 26U);
+  EXPECT_EQ(times.front(), 0.0);
+  EXPECT_EQ(times.back(), 0.05);
+
+  const nlohmann::json summary = read_json(results / "summary.json");
+  EXPECT_EQ(summary.at("scene"), scene_file());
+  EXPECT_EQ(summary.at("threads"), 2);
+  EXPECT_EQ(summary.at("time"), 0.05);
+  EXPECT_EQ(summary.at("stop_reason"), "time");
+  EXPECT_EQ(summary.at("particles"), 800);
+  for (const char* key : {"version", "title", "steps", "wall_seconds", "particle_steps_per_second", "peak_memory_bytes",
+                          "momentum", "maximum_speed_ever", "parameters"}) {
+    EXPECT_TRUE(summary.contains(key)) << key;
+  }
+  const nlohmann::json& left = summary.at("bodies").at("left");
+  EXPECT_EQ(left.at("failed_particles"), 0);
+  EXPECT_EQ(left.at("left_domain"), 0);
+  EXPECT_NEAR(left.at("mass"), 0.064, 1e-12);
+  EXPECT_EQ(left.at("velocity").size(), 3U);
+  EXPECT_EQ(summary.at("results").at("residual_velocity"), left.at("speed"));
+  EXPECT_LT(left.at("speed"), 39.0);  // they did meet
+  const nlohmann::json& energy = summary.at("energy");
+  for (const char* key : {"kinetic", "internal", "plastic_dissipation", "total", "initial_total"}) {
+    EXPECT_TRUE(energy.at(key).is_number()) << key;
+  }
+  EXPECT_LT(std::abs(energy.at("residual_relative").get<double>()), 0.2);
+  EXPECT_NEAR(summary.at("momentum").at(0), 0.064 * 40, 1e-10);
+}
+
+TEST(Run, output_does_not_change_results) {
+  const ScratchDirectory scratch;
+  ASSERT_EQ(run_program(scratch.path(), {"run", scene_file(), "-o", "often"}).exit_code, 0);
+  ASSERT_EQ(run_program(scratch.path(),
+                        {"run", scene_file(), "-o", "seldom", "--set", "output.history_interval=0.0333", "--set",
+                         "output.particle_interval=0", "--set", "output.checkpoint_steps=0", "--threads", "2"})
+                .exit_code,
+            0);
+  const nlohmann::json often = read_json(scratch / "often" / "summary.json");
+  const nlohmann::json seldom = read_json(scratch / "seldom" / "summary.json");
+  for (const char* key : {"steps", "time", "bodies", "energy", "momentum", "results", "maximum_speed_ever"}) {
+    EXPECT_EQ(often.at(key), seldom.at(key)) << key;
+  }
+  EXPECT_EQ(names_in(scratch / "seldom"), (std::vector<std::string>{"history.csv", "summary.json"}));
+}
+
+TEST(Run, refuses_a_directory_that_holds_a_run) {
+  const ScratchDirectory scratch;
+  const std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--until", "0.002"};
+  ASSERT_EQ(run_program(scratch.path(), command).exit_code, 0);
+  write_file(scratch / "results" / "notes.txt", "mine");
+  const std::string before = read_file(scratch / "results" / "summary.json");
+  const Outcome refused = run_program(scratch.path(), command);
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_EQ(count_of(refused.errors, "\n"), 1U);
+  EXPECT_NE(refused.errors.find("--overwrite"), std::string::npos) << refused.errors;
+  EXPECT_EQ(read_file(scratch / "results" / "summary.json"), before);
+
+  std::vector<std::string> again = command;
+  again.push_back("--overwrite");
+  EXPECT_EQ(run_program(scratch.path(), again).exit_code, 0);
+  EXPECT_EQ(read_file(scratch / "results" / "notes.txt"), "mine");
+}
+
+TEST(Run, output_that_cannot_be_written_gives_code_4) {
+  const ScratchDirectory scratch;
+  write_file(scratch / "file", "");
+  for (const char* directory : {"file", "file/below", "/proc/nowhere"}) {
+    const Outcome outcome = run_program(scratch.path(), {"run", scene_file(), "-o", directory});
+    EXPECT_EQ(outcome.exit_code, 4) << directory;
+    EXPECT_EQ(count_of(outcome.errors, "\n"), 1U) << outcome.errors;
+  }
+  EXPECT_EQ(names_in(scratch.path()), std::vector<std::string>{"file"});
+}
+
+TEST(Run, max_steps_ends_it) {
+  const ScratchDirectory scratch;
+  ASSERT_EQ(run_program(scratch.path(), {"run", scene_file(), "-o", "results", "--set", "stop.max_steps=7"}).exit_code,
+            0);
+  const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
+  EXPECT_EQ(summary.at("steps"), 7);
+  EXPECT_EQ(summary.at("stop_reason"), "max_steps");
+}
+
+TEST(Run, breakdown_gives_code_3_and_keeps_the_state) {
+  const ScratchDirectory scratch;
+  // Crushed between rigid walls at Mach 13, with a law that knows no shocks.
+  std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "parameters.V0=5000"};
+  for (const char* face : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}) {
+    command.insert(command.end(), {"--set", std::string("grid.faces.") + face + "=fixed"});
+  }
+  const Outcome outcome = run_program(scratch.path(), command);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(count_of(outcome.errors, "\n"), 1U) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("the computation broke down: "), 0U) << outcome.errors;
+  EXPECT_EQ(run_program(scratch.path(), {"info", "results/failed-state.h5", "--verify"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(scratch / "results" / "summary.json"));
+}
+
+}  // namespace
