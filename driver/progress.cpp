@@ -58,18 +58,24 @@ void Progress::show(const ogive_world* world, const ogive_progress& progress, do
   const double remaining = part > 0 ? seconds_now * (1 - part) / part : -1;
   char energy[32];
   std::snprintf(energy, sizeof energy, "%+.2f %%", 100 * ledger_of(world).residual_relative);
-  std::string line = percent(part) + "  step " + std::to_string(progress.steps) + "  time " + brief(progress.time) +
-                     ' ' + units_.time + "  dt " + brief(progress.last_time_step) + "  " + brief(rate / 1e6) +
-                     " M particle-steps/s  ETA " + duration(remaining) + "  energy " + energy;
   if (!terminal_) {
-    std::printf("%s\n", line.c_str());
+    std::printf("%s  step %lld  time %s %s  dt %s  %s M particle-steps/s  ETA %s  energy %s\n", percent(part).c_str(),
+                static_cast<long long>(progress.steps), brief(progress.time).c_str(), units_.time.c_str(),
+                brief(progress.last_time_step).c_str(), brief(rate / 1e6).c_str(), duration(remaining).c_str(), energy);
     std::fflush(stdout);
     return;
   }
-  constexpr size_t kBar = 20;
-  const auto filled = static_cast<size_t>(part * kBar);
-  line = '[' + std::string(filled, '#') + std::string(kBar - filled, '.') + "] " + line;
-  line.resize(std::min(line.size(), terminal_columns() - 1));
+  std::string line = percent(part) + " step " + std::to_string(progress.steps) + " t " + brief(progress.time) + ' ' +
+                     units_.time + " dt " + brief(progress.last_time_step) + ' ' + brief(rate / 1e6) + " M/s ETA " +
+                     duration(remaining) + " energy " + energy;
+  // The bar takes what room the figures leave.
+  const size_t columns = terminal_columns() - 1;
+  if (columns > line.size() + 7) {
+    const size_t width = std::min<size_t>(columns - line.size() - 3, 30);
+    const auto filled = static_cast<size_t>(part * static_cast<double>(width));
+    line = '[' + std::string(filled, '#') + std::string(width - filled, '.') + "] " + line;
+  }
+  line.resize(std::min(line.size(), columns));
   std::printf("\r%s\033[K", line.c_str());
   std::fflush(stdout);
   line_open_ = true;
