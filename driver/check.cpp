@@ -63,8 +63,8 @@ ExitCode check(const std::string& scene_file, const std::vector<std::string>& se
   std::printf("memory: %s\n", bytes(progress.memory_bytes).c_str());
   std::printf(
       "steps: about %s of %s %s to time %s %s; stress may make them shorter, stop conditions may end them sooner\n",
-      grouped(static_cast<int64_t>(steps)).c_str(), brief(time_step).c_str(), scene.units.time.c_str(),
-      brief(scene.stop.time).c_str(), scene.units.time.c_str());
+      (steps < 1e15 ? grouped(static_cast<int64_t>(steps)) : brief(steps)).c_str(), brief(time_step).c_str(),
+      scene.units.time.c_str(), brief(scene.stop.time).c_str(), scene.units.time.c_str());
   std::printf("time: about %s at %s particle-steps/s here and now\n", duration(steps * step_seconds).c_str(),
               grouped(static_cast<int64_t>(static_cast<double>(progress.particles) / step_seconds)).c_str());
   return kExitOk;

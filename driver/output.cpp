@@ -187,6 +187,7 @@ int64_t peak_memory_bytes() {
 }  // namespace
 
 void require_usable_directory(const std::filesystem::path& directory, bool overwrite) {
+  if (directory.empty()) throw Failure(kExitInput, "--output: must be the name of a directory, got an empty text");
   std::error_code ignored;
   if (!std::filesystem::exists(directory, ignored)) return;
   if (!std::filesystem::is_directory(directory, ignored)) {

@@ -40,6 +40,7 @@ TEST(CommandLine, wrong_ones_give_code_2_and_one_line) {
                                                        {"run", "a.toml", "--unti", "3"},
                                                        {"run", "a.toml", "--until", "soon"},
                                                        {"run", "a.toml", "--set"},
+                                                       {"run", data("two_boxes.toml"), "-o", ""},
                                                        {"restart"},
                                                        {"voxelise", "a.stl"},
                                                        {"voxelise", "a.stl", "--spacing", "0", "-o", "b.csv"}};
