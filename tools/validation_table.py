@@ -1,0 +1,139 @@
+"""What the validation tools share: reference tables, many runs side by side, blocks in documents."""
+
+import csv
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import time
+
+from plot_common import Refused
+
+
+def read_references(path):
+    """A CSV with '#' lines of sources: {first column: {column: number}}."""
+    with open(path, encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    key = next(iter(rows[0]))
+    return {float(row[key]): {name: float(value) for name, value in row.items()} for row in rows}
+
+
+def digest(*paths):
+    """A short checksum of files."""
+    total = hashlib.sha256()
+    for path in paths:
+        with open(path, "rb") as file:
+            total.update(file.read())
+    return total.hexdigest()[:16]
+
+
+class Case:
+    """One run of the program: where it is, how it is called, and what came of it."""
+
+    def __init__(self, directory, options, identity):
+        self.directory = directory
+        self.options = options  # of `ogive run`, without scene and output
+        self.identity = identity  # of program and scene
+        self.process = None
+        self.started = 0.0
+
+    def _record(self):
+        return {"options": self.options, **self.identity}
+
+    @property
+    def _record_file(self):
+        return os.path.join(self.directory, "case.json")
+
+    def outcome(self):
+        """{"summary": ...} or {"failure": text} of a run that has ended with these options and this program; else None."""
+        try:
+            with open(self._record_file, encoding="utf-8") as file:
+                record = json.load(file)
+            outcome = record.pop("outcome")
+            if record != self._record():
+                return None
+            if "failure" in outcome:
+                return outcome
+            with open(os.path.join(self.directory, "summary.json"), encoding="utf-8") as file:
+                return {"summary": json.load(file)}
+        except (OSError, ValueError, KeyError):
+            return None
+
+    def start(self, program, scene):
+        os.makedirs(os.path.dirname(self.directory), exist_ok=True)
+        self.log = open(self.directory + ".log", "w", encoding="utf-8")
+        self.started = time.monotonic()
+        self.process = subprocess.Popen(
+            [program, "run", scene, "--output", self.directory, "--overwrite", "--threads", "1", *self.options],
+            stdout=self.log, stderr=subprocess.STDOUT)
+
+    def finish(self, engine):
+        """After the process has ended: keeps the outcome where it is one. Returns it in words."""
+        code = self.process.returncode
+        self.log.close()
+        with open(self.log.name, encoding="utf-8") as file:
+            lines = file.read().split("\n")
+        last = next((line for line in reversed(lines) if line.strip()), "")
+        if code not in (0, 3):  # 3: the computation broke down, which is a result too
+            raise Refused(f"{self.directory}: exit code {code}: {last}")
+        if digest(engine) != self.identity["engine"]:
+            raise Refused(f"{self.directory}: {engine} was built anew in the meantime")
+        outcome = {} if code == 0 else {"failure": last}
+        with open(self._record_file, "w", encoding="utf-8") as file:
+            json.dump({**self._record(), "outcome": outcome}, file, indent=2)
+        return last if code else "done"
+
+
+def run_cases(cases, program, engine, scene, jobs):
+    """Runs those that have no outcome yet, `jobs` at a time. An interruption ends the running ones; the rest is kept."""
+    waiting = [case for case in cases if case.outcome() is None]
+    if len(waiting) < len(cases):
+        print(f"{len(cases) - len(waiting)} of {len(cases)} runs are there already", flush=True)
+    running, problems = [], []
+    try:
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                case = waiting.pop(0)
+                case.start(program, scene)
+                running.append(case)
+            time.sleep(0.2)
+            for case in [case for case in running if case.process.poll() is not None]:
+                running.remove(case)
+                try:
+                    words = case.finish(engine)
+                except Refused as problem:
+                    problems.append(str(problem))
+                    words = str(problem)
+                print(f"{case.directory}: {words} ({time.monotonic() - case.started:.0f} s), "
+                      f"{len(waiting) + len(running)} to go", flush=True)
+    finally:
+        for case in running:
+            case.process.send_signal(signal.SIGTERM)
+        for case in running:
+            case.process.wait()
+    if problems:
+        raise Refused(f"{len(problems)} runs could not be made; the first: {problems[0]}")
+
+
+def replace_block(path, name, text, heading=""):
+    """Puts text between <!-- name:begin --> and <!-- name:end --> of a document; appended, under heading, if not there."""
+    begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
+    try:
+        with open(path, encoding="utf-8") as file:
+            document = file.read()
+    except FileNotFoundError:
+        document = ""
+    if begin not in document:
+        document += f"{heading}\n{begin}\n{end}\n"
+    before, rest = document.split(begin, 1)
+    if end not in rest:
+        raise Refused(f"{path}: {begin} without {end}")
+    _, after = rest.split(end, 1)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"{before}{begin}\n{text.strip()}\n{end}{after}")
+
+
+def markdown_table(heading, rows):
+    lines = ["| " + " | ".join(heading) + " |", "|" + "---|" * len(heading)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
