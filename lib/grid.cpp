@@ -401,6 +401,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
 
   workspace.nodes.resize(workspace.slots.size() * block_nodes);
   workspace.contacts.resize(static_cast<std::size_t>(contacts) * block_nodes);
+  workspace.approach.resize(model.contact_method == ContactMethod::HuangSecond ? workspace.contacts.size() : 0);
   workspace.stress_sums.resize(workspace.links.size());
   workspace.move_sums.resize(workspace.links.size());
   workspace.slot_contact_force.resize(workspace.slots.size());
@@ -484,7 +485,7 @@ KernelMaterial kernel_material(const Material& material, double cell_size) {
 
 std::int64_t Workspace::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
-  std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(links) + bytes(pencils) + bytes(mixed) +
+  std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(approach) + bytes(links) + bytes(pencils) + bytes(mixed) +
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(scratch);
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
   return total;

@@ -73,6 +73,7 @@ struct Workspace {
   std::vector<Slot> slots;                // ordered by block (z, y, x), then field
   AlignedVector<NodeRecord> nodes;        // 64 a slot
   AlignedVector<ContactRecord> contacts;  // 64 a slot that has them
+  std::vector<Vector3> approach;          // velocity that (25) took from the node; 64 a slot of a mixed block
   std::vector<GroupLinks> links;          // ordered by colour, pencil, body, block x
   std::vector<Pencil> pencils;
   std::array<std::int32_t, 5> colour{};   // first pencil of each colour, and the end

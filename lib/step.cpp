@@ -9,6 +9,7 @@
 #include "boundary/boundary.hpp"
 #include "contact/contact.hpp"
 #include "error.hpp"
+#include "simd/subnormals.hpp"
 #include "time_step.hpp"
 
 namespace ogive {
@@ -38,6 +39,8 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   update_stress_and_internal_force(model, state, workspace, dt); // (29), (30), stress, (31)
   fold_force(state, workspace, dt);
   trial_velocities(model, state, workspace, dt);                 // (32), (11) or (26)
+  if (model.contact_method == ContactMethod::HuangSecond)
+    restore_approach(workspace);                                 // the jump of (25) belongs to the increment (34)
   hold_faces(state, workspace);
   if (model.contact_method != ContactMethod::SingleField)
     apply_contact_force(model, state, workspace, dt);            // (12)-(22), (14)
@@ -60,9 +63,13 @@ template <class Work>
 void for_coloured_groups(Workspace& workspace, Work&& work) {
   for (int colour = 0; colour < 4; ++colour) {
     const std::int32_t begin = workspace.colour[colour], end = workspace.colour[colour + 1];
-#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 1) if (end - begin > 1)
-    for (std::int32_t p = begin; p < end; ++p)
-      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
+#pragma omp parallel num_threads(workspace.threads) if (end - begin > 1)
+    {
+      const FlushSubnormals flush;
+#pragma omp for schedule(dynamic, 1)
+      for (std::int32_t p = begin; p < end; ++p)
+        for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
+    }
   }
 }
 
@@ -70,8 +77,12 @@ void for_coloured_groups(Workspace& workspace, Work&& work) {
 template <class Work>
 void for_nodes(Workspace& workspace, Work&& work) {
   const std::int64_t count = static_cast<std::int64_t>(workspace.nodes.size());
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-  for (std::int64_t i = 0; i < count; ++i) work(workspace.nodes[i]);
+#pragma omp parallel num_threads(workspace.threads)
+  {
+    const FlushSubnormals flush;
+#pragma omp for schedule(static)
+    for (std::int64_t i = 0; i < count; ++i) work(workspace.nodes[i]);
+  }
 }
 
 void clear_grid(Workspace& workspace) {
@@ -176,13 +187,17 @@ void accelerations(Workspace& workspace, double dt) {
 void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt) {
   const int shape = static_cast<int>(model.numerics.shape_function);
   const std::int32_t count = static_cast<std::int32_t>(workspace.pencils.size());
-#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 1) if (count > 1)
-  for (std::int32_t p = 0; p < count; ++p)
-    for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
-      const GroupLinks& link = workspace.links[l];
-      workspace.kernels->update_particles[shape](kernel_group(model, state, workspace, link, dt),
-                                                 kernel_particles(state.bodies[link.body]), workspace.move_sums[l]);
-    }
+#pragma omp parallel num_threads(workspace.threads) if (count > 1)
+  {
+    const FlushSubnormals flush;
+#pragma omp for schedule(dynamic, 1)
+    for (std::int32_t p = 0; p < count; ++p)
+      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
+        const GroupLinks& link = workspace.links[l];
+        workspace.kernels->update_particles[shape](kernel_group(model, state, workspace, link, dt),
+                                                   kernel_particles(state.bodies[link.body]), workspace.move_sums[l]);
+      }
+  }
   for (BodyState& body : state.bodies) body.totals.maximum_speed = 0;
   for (std::size_t l = 0; l < workspace.links.size(); ++l) {
     BodyState& body = state.bodies[workspace.links[l].body];

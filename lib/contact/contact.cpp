@@ -210,15 +210,30 @@ double surface_distance(ShapeFunction shape, double fraction) {
 }
 
 void remove_approach(const Model& model, State& state, Workspace& workspace) {
-  for_contact_nodes(model, state, workspace, false,
-                    [&](ContactNode& contact, const MixedBlock& block, int node, BlockSums& sums) {
-                      contact.resolve(false, [&](int, int, const Vec3&, double, double loss) { sums.contact_work -= loss; });
-                      for (const FieldAtNode& field : contact.fields()) {
-                        double* v =
-                            workspace.nodes[(static_cast<std::size_t>(block.first_slot) + field.slot) * block_nodes + node].v;
-                        for (int c = 0; c < 3; ++c) v[c] = field.velocity[c];
-                      }
-                    });
+  std::fill(workspace.approach.begin(), workspace.approach.end(), Vec3{});
+  for_contact_nodes(
+      model, state, workspace, false, [&](ContactNode& contact, const MixedBlock& block, int node, BlockSums& sums) {
+        contact.resolve(false, [&](int, int, const Vec3&, double, double loss) { sums.contact_work -= loss; });
+        for (const FieldAtNode& field : contact.fields()) {
+          const std::size_t slot = static_cast<std::size_t>(block.first_slot) + field.slot;
+          double* v = workspace.nodes[slot * block_nodes + node].v;
+          Vec3& taken = workspace.approach[static_cast<std::size_t>(workspace.slots[slot].contact) * block_nodes + node];
+          for (int c = 0; c < 3; ++c) {
+            taken[c] = v[c] - field.velocity[c];
+            v[c] = field.velocity[c];
+          }
+        }
+      });
+}
+
+void restore_approach(Workspace& workspace) {
+  for (const MixedBlock& block : workspace.mixed)
+    for (std::int32_t i = 0; i < block.count; ++i) {
+      const std::size_t slot = static_cast<std::size_t>(block.first_slot) + i;
+      const Vec3* taken = &workspace.approach[static_cast<std::size_t>(workspace.slots[slot].contact) * block_nodes];
+      for (int node = 0; node < block_nodes; ++node)
+        for (int c = 0; c < 3; ++c) workspace.nodes[slot * block_nodes + node].v[c] += taken[node][c];
+    }
 }
 
 void apply_contact_force(const Model& model, State& state, Workspace& workspace, double dt) {

@@ -11,6 +11,9 @@ namespace ogive {
 // Node records hold {velocity, mass | -}.
 void remove_approach(const Model& model, State& state, Workspace& workspace);
 
+// Puts it back once the trial velocities stand, so that the particles' increments (34) contain the jump of (25).
+void restore_approach(Workspace& workspace);
+
 // Eqs. (12)-(22) and (14): normal and friction impulses that correct the trial velocities.
 // Node records hold {velocity at the beginning of the step, mass | trial velocity}; the trial velocity is replaced.
 void apply_contact_force(const Model& model, State& state, Workspace& workspace, double dt);

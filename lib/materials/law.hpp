@@ -256,7 +256,9 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
     }
 
     s.stress = {deviator.xx - p1, deviator.yy - p1, deviator.zz - p1, deviator.yz, deviator.xz, deviator.xy};
-    s.wave_speed_squared = (modulus + (4.0 / 3.0) * m.G) * J1 * (1.0 / m.density);
+    // What has failed carries no shear wave; without this, debris that has opened up would shorten everybody's step.
+    const V shear = select(failed, zero, broadcast<V>((4.0 / 3.0) * m.G));
+    s.wave_speed_squared = (modulus + shear) * J1 * (1.0 / m.density);
     s.energy = energy;
     s.volume_ratio = J1;
   }
