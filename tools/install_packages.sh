@@ -37,8 +37,8 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 
 echo "installing: ${absent[*]}"
-if ! { "${as_root[@]}" apt-get update &&
-       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${absent[@]}"; }; then
+if ! { "${as_root[@]}" apt-get -q update &&
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "${absent[@]}"; }; then
   echo "install_packages.sh: apt-get could not install: ${absent[*]}" >&2
   exit 1
 fi
