@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <memory>
 #include <new>
@@ -291,15 +292,28 @@ SolidDef solid_of(const ogive_solid_def* def) {
 void refuse_overlap(const Model& model, const State& state) {
   constexpr double limit = 1.35, least_share = 0.15;
   const double h = model.grid.cell_size;
-  std::vector<BodyAudit> audits;
-  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) audits.push_back(audit_body(model, state, b));
-  for (int a = 0; a < static_cast<int>(audits.size()); ++a)
-    for (int b = a + 1; b < static_cast<int>(audits.size()); ++b) {
+  struct Bounds {
+    Vector3 lower, upper;
+  };
+  std::vector<Bounds> bounds;
+  for (const BodyState& body : state.bodies) {
+    Bounds box;
+    box.lower.fill(std::numeric_limits<double>::infinity());
+    box.upper.fill(-std::numeric_limits<double>::infinity());
+    for (std::int64_t p = 0; p < body.padded; ++p)
+      for (int c = 0; c < 3; ++c) {
+        box.lower[c] = std::min(box.lower[c], body.position[4 * p + c]);
+        box.upper[c] = std::max(box.upper[c], body.position[4 * p + c]);
+      }
+    bounds.push_back(box);
+  }
+  for (int a = 0; a < static_cast<int>(bounds.size()); ++a)
+    for (int b = a + 1; b < static_cast<int>(bounds.size()); ++b) {
       Vector3 lower, upper;
       bool apart = false;
       for (int c = 0; c < 3; ++c) {
-        lower[c] = std::max(audits[a].lower[c], audits[b].lower[c]) - h;
-        upper[c] = std::min(audits[a].upper[c], audits[b].upper[c]) + h;
+        lower[c] = std::max(bounds[a].lower[c], bounds[b].lower[c]) - h;
+        upper[c] = std::min(bounds[a].upper[c], bounds[b].upper[c]) + h;
         apart = apart || lower[c] > upper[c];
       }
       if (apart) continue;

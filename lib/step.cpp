@@ -17,7 +17,7 @@ namespace {
 
 void clear_grid(Workspace& workspace);
 void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace);
-void nodal_velocities(const Model& model, Workspace& workspace);
+void nodal_velocities(Workspace& workspace);
 void update_stress_and_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
 void trial_velocities(const Model& model, State& state, Workspace& workspace, double dt);
 void accelerations(Workspace& workspace, double dt);
@@ -32,7 +32,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   clear_grid(workspace);
   map_mass_and_momentum(model, state, workspace);                // (27), (28), (9)
   fold_momentum(workspace);                                      // symmetry and fixed faces
-  nodal_velocities(model, workspace);                            // (6)
+  nodal_velocities(workspace);                                   // (6)
   if (model.contact_method == ContactMethod::HuangSecond)
     remove_approach(model, state, workspace);                    // (23)-(25)
   unfold_velocity(workspace);
@@ -104,16 +104,11 @@ void map_mass_and_momentum(const Model& model, State& state, Workspace& workspac
   });
 }
 
-// Momentum to velocity. A node whose mass is round-off of a particle's carries nothing.
-void nodal_velocities(const Model& model, Workspace& workspace) {
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const Body& body : model.bodies) lightest = std::min(lightest, model.materials[body.material].density);
-  const double cut_off = 1e-14 * lightest * std::pow(model.grid.cell_size, 3);
+// Momentum to velocity. There is no mass cut-off: a node with ever so little mass has a force in proportion, and dropping
+// it would lose momentum.
+void nodal_velocities(Workspace& workspace) {
   for_nodes(workspace, [&](NodeRecord& node) {
-    if (!(node.v[3] > cut_off)) {
-      for (double& c : node.v) c = 0;
-      return;
-    }
+    if (!(node.v[3] > 0)) return;
     const double inverse = 1.0 / node.v[3];
     for (int c = 0; c < 3; ++c) node.v[c] *= inverse;
   });

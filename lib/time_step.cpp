@@ -25,9 +25,8 @@ double limit(const Model& model, const State& state, double fastest) {
 
 double stable_time_step(const Model& model, const State& state, const Workspace& workspace) {
   double fastest = 0;
-  for (std::size_t l = 0; l < workspace.links.size(); ++l)
-    fastest = std::max(fastest, std::sqrt(workspace.stress_sums[l].wave_speed_squared) +
-                                    std::sqrt(workspace.move_sums[l].speed_squared));
+  for (const StressSums& sums : workspace.stress_sums) fastest = std::max(fastest, sums.fastest);
+  if (workspace.links.empty()) return state.stable_time_step;  // nothing is left to be fast
   return limit(model, state, fastest);
 }
 

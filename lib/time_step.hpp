@@ -1,6 +1,6 @@
-// Time step from Huang et al. 2010, Eq. (35): dt = alpha h / max(c + |v|), c the fastest elastic or equation-of-state wave
-// at the current state, |v| the particle's speed. The maximum is taken of each group's fastest wave plus its fastest
-// particle, which is never less than the fastest sum.
+// Time step from Huang et al. 2010, Eq. (35): dt = alpha h / max(c + |v|), c the particle's fastest elastic or
+// equation-of-state wave at its current state, |v| the speed at which the grid moves it. The maximum is taken particle by
+// particle, so that it does not depend on how the grid is cut into blocks: a half model takes the full model's steps.
 #pragma once
 
 #include "grid.hpp"

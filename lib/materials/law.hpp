@@ -10,8 +10,9 @@
 //   expansion the thermal part is gamma0 E / J, which meets (38) at J = 1 and lets debris cool as it expands instead of
 //   keeping the pressure of the solid.
 // Energy: dE = J_mid s_mid : deps - p_mid dJ, implicit in p_mid, solved in closed form.
-// Failure: at eps_p >= failure_strain the deviator and any tension are zero, the cold pressure in expansion too; the
-//   elastic energy that goes with them is booked as failure loss.
+// Failure: at eps_p >= failure_strain the deviator is zero and so is the pressure where the whole of it, cold and thermal
+//   part together, would be tension; the elastic energy that goes with them is booked as failure loss. (Dropping the cold
+//   part alone would let the heat of plastic work drive debris apart like a gas, to V / V0 of some hundred.)
 // Neo-Hookean: sigma = ((lambda ln J) I + G (F F^T - I)) / J, energy lambda/2 ln^2 J - G ln J + G/2 (tr F F^T - 3).
 // Bulk viscosity: q = rho h |d| (c_q h |d| + c_l c) while the volume shrinks at rate d; it acts on the grid and heats, and
 //   is no part of the stored stress.
@@ -223,7 +224,7 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
       const V hugoniot = scale * mu * inverse_J;
       const V half_gamma = broadcast<V>(0.5 * m.gruneisen);
       const V cold_compressed = hugoniot * (1.0 - half_gamma * mu * J1);
-      const V cold_expanded = select(failed, zero, m.rho_c0_squared * mu);
+      const V cold_expanded = m.rho_c0_squared * mu;
       const V cold = select(compressed, cold_compressed, cold_expanded);
       const V thermal = m.gruneisen * select(compressed, broadcast<V>(1.0), inverse_J);
       // p1 = cold + thermal (energy - (p0 + p1) dJ / 2), solved for p1. The factor of p1 is 1 - O(strain increment): it

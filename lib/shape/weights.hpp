@@ -4,6 +4,9 @@
 // that the particle touches, the weights w = N and the derivatives d = dN/dxi there.
 // Linear: N = 1 - |x| (Huang et al. 2010, the eight-node grid of section 4). Quadratic B-spline: Steffen, Kirby, Berzins
 // 2008. Both are continuous, so it does not matter to which side a particle exactly on a boundary is rounded.
+// A linear weight may vanish where its derivative does not: a particle in a plane of nodes would push a node that it gives
+// no mass to. Weights are kept at or above `least_weight`, as if the particle were that part of a cell off the plane, so
+// that every node with a force has the mass to take it and momentum is whole.
 #pragma once
 
 #include "simd/lanes.hpp"
@@ -13,11 +16,12 @@ namespace OGIVE_ISA_NAMESPACE {
 
 struct LinearShape {
   static constexpr int nodes = 2;
+  static constexpr double least_weight = 1e-9;
 
   template <class V>
   OGIVE_INLINE void at(V xi, V& first, V (&w)[2], V (&d)[2]) {
     first = round(xi - 0.5);
-    const V f = xi - first;
+    const V f = min(max(xi - first, broadcast<V>(least_weight)), broadcast<V>(1.0 - least_weight));
     w[0] = 1.0 - f;
     w[1] = f;
     d[0] = broadcast<V>(-1.0);

@@ -60,7 +60,7 @@ struct KernelMaterial {
 
 // What a group's stress update reports.
 struct StressSums {
-  double wave_speed_squared;    // largest c^2
+  double fastest;               // largest c + |v|: wave speed and the speed at which the grid moves the particle
   double plastic_dissipation, viscous_dissipation;
   double failure_loss, failed_mass;
   std::int64_t failed_particles;

@@ -31,10 +31,11 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
     Weights<Shape>::fill(weights, group, x, y, z, true);
 
     // Rows of records to lanes: after the transposes gradient[j][i] holds dv_i/dx_j of four particles.
-    Record gradient[3][lane_count];
+    Record gradient[3][lane_count], motion[lane_count];
     for (int lane = 0; lane < lane_count; ++lane)
-      gather_gradient<Shape>(weights, lane, velocity + static_cast<std::int64_t>(weights.first[lane]),
+      gather_gradient<Shape>(weights, lane, velocity + static_cast<std::int64_t>(weights.first[lane]), motion[lane],
                              gradient[0][lane], gradient[1][lane], gradient[2][lane]);
+    transpose(motion[0], motion[1], motion[2], motion[3]);
     LawState<Lanes> s;
     s.temperature = Lanes{};
     s.dt = broadcast<Lanes>(group.time_step);
@@ -89,7 +90,9 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
       }
     }
     viscous_work += initial_volume * s.viscous_work;
-    fastest = max(s.wave_speed_squared, fastest);
+    fastest = max(sqrt(s.wave_speed_squared) +
+                      sqrt(motion[0] * motion[0] + motion[1] * motion[1] + motion[2] * motion[2]),
+                  fastest);
     // Also catches what is not a number.
     if (!all((s.volume_ratio > 1e-6) & (s.volume_ratio < 1e6) & (s.wave_speed_squared < 1e300)) && sums.bad_particle < 0)
       for (int lane = lane_count - 1; lane >= 0; --lane)
@@ -112,10 +115,10 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
     double* f = group.nodes[block][node].f;
     store_aligned(f, load_aligned<Record>(f) + force[t]);
   });
-  sums.wave_speed_squared = 0;
+  sums.fastest = 0;
   sums.plastic_dissipation = sums.viscous_dissipation = 0;
   for (int lane = 0; lane < lane_count; ++lane) {
-    if (fastest[lane] > sums.wave_speed_squared) sums.wave_speed_squared = fastest[lane];
+    if (fastest[lane] > sums.fastest) sums.fastest = fastest[lane];
     sums.plastic_dissipation += plastic_work[lane];
     sums.viscous_dissipation += viscous_work[lane];
   }

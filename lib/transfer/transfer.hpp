@@ -97,12 +97,12 @@ OGIVE_INLINE Record gather_value(const Weights<Shape>& weights, int lane, const 
   return sum;
 }
 
-// Sums of dN/dx, dN/dy, dN/dz times the node's record.
+// Sums of N, dN/dx, dN/dy, dN/dz times the node's record.
 template <class Shape>
-OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const Record* first, Record& dx, Record& dy,
-                                  Record& dz) {
+OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const Record* first, Record& value, Record& dx,
+                                  Record& dy, Record& dz) {
   constexpr int N = Shape::nodes;
-  dx = dy = dz = Record{};
+  value = dx = dy = dz = Record{};
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
     Record value_y{}, dx_y{}, dy_y{};
@@ -122,6 +122,7 @@ OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const
     dx += dx_y * weights.w[2][k][lane];
     dy += dy_y * weights.w[2][k][lane];
     dz += value_y * weights.d[2][k][lane];
+    value += value_y * weights.w[2][k][lane];
   }
 }
 

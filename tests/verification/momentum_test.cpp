@@ -83,9 +83,9 @@ std::map<std::string, std::vector<double>> three_bodies(std::int32_t shape, std:
   const ogive_material_id light = scene.material("light", elastic(2.7e-3, 69e3, 0.3));
   const ogive_material_id heavy = scene.material("heavy", steel());
   for (int body : order) {
-    if (body == 0) scene.box("left", light, {-4, 0.26, -2}, {0, 4.26, 2}, 0.5, {5, -30, 0});
-    if (body == 1) scene.box("right", heavy, {0.26, 0.26, -2}, {4.26, 4.26, 2}, 0.5, {-20, -30, 3});
-    if (body == 2) scene.box("below", light, {-2, -4.26, -2}, {2, -0.26, 2}, 0.5, {0, 40, 0});
+    if (body == 0) scene.box("left", light, {-4, 0.25, -2}, {0, 4.25, 2}, 0.5, {5, -30, 0});
+    if (body == 1) scene.box("right", heavy, {0.25, 0.25, -2}, {4.25, 4.25, 2}, 0.5, {-20, -30, 3});
+    if (body == 2) scene.box("below", light, {-2, -4.25, -2}, {2, -0.25, 2}, 0.5, {0, 40, 0});
   }
   scene.prepare();
   const Total before = momentum_of(scene);
