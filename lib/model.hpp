@@ -85,7 +85,7 @@ struct ContactRule {
   std::int32_t master = -1;
   double friction = 0;
   Detection detection = Detection::Gap;
-  double gap_offset = 0;
+  double gap_offset = 0.3;
 };
 
 struct PairRule {
