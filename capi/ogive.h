@@ -342,8 +342,9 @@ OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_prog
 /* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
  *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation - external_work
  *   residual = total - initial_total; what no term accounts for
- * contact_work and boundary_work are what the inelastic nodal contact and the wall nodes took from the grid's kinetic
- * energy: they are part of the residual and tell where it comes from. */
+ * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
+ * Particles lose less than that (they carry motion that the grid does not see), so these are indicators and part of no
+ * sum: compare them between runs, not with the residual. */
 typedef struct ogive_ledger {
   uint32_t struct_size;
   uint32_t reserved0;
