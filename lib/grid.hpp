@@ -88,7 +88,6 @@ struct Workspace {
   // One entry a slot of a mixed block.
   std::vector<Vector3> slot_contact_force;
   AlignedVector<double> scratch;          // for binning
-  AlignedVector<std::int32_t> scratch_int;
 
   std::int64_t memory_bytes() const;
 };

@@ -60,7 +60,6 @@ struct BodyState {
   std::array<AlignedVector<double>, 9> deformation;  // F row by row
   AlignedVector<std::int32_t> number;                // the particle's number in its body, -1 in the padding
   std::vector<Group> groups;                         // ordered by block: z, then y, then x
-  double wave_speed = 0;                             // largest c + |v| bound of its groups after the last step
   bool drifted = false;                              // some particle has left its group's bounds: bin before the next step
   BodyTotals totals;
 
