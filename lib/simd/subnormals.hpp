@@ -1,7 +1,7 @@
 // Numbers below 1e-308 count as zero while a FlushSubnormals lives on this thread.
 //
 // Ahead of every wave a step spreads ever smaller numbers into material at rest; within some hundred steps they are
-// subnormal, and arithmetic on them is tens of times slower (a thick-plate run slowed down by a factor 2 to 5). The
+// subnormal, which some processors handle in slow microcode (no gain was measured on AMD Zen 3: docs/decisions.md). The
 // processor's mode is put back afterwards: a library is a guest in its host's threads.
 #pragma once
 

@@ -78,7 +78,7 @@ TEST_P(PartialModel, HalfOfAnOffCentreImpactIsTheFullModel) {
   impact.half_y = true;
   Scene half = impact.build();
   run(whole, half);
-  expect_same(whole, half, 2, 1e-6);  // measured at most 1e-8, at the few particles that have just failed
+  expect_same(whole, half, 2, 3e-7);  // measured at most 9.0e-8 (stress; linear and B-spline, all methods)
 }
 
 TEST_P(PartialModel, QuarterOfACentralImpactIsTheFullModel) {
@@ -87,7 +87,7 @@ TEST_P(PartialModel, QuarterOfACentralImpactIsTheFullModel) {
   impact.half_x = impact.half_y = true;
   Scene quarter = impact.build();
   run(whole, quarter);
-  expect_same(whole, quarter, 4, 1e-6);  // measured at most 1e-8, at the few particles that have just failed
+  expect_same(whole, quarter, 4, 3e-7);  // measured at most 9.0e-8 (stress; linear and B-spline, all methods)
 }
 
 INSTANTIATE_TEST_SUITE_P(Symmetry, PartialModel,
