@@ -262,6 +262,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
     mass_sum += mass;
   }
   for (int c = 0; c < 3; ++c) body.totals.initial_velocity[c] = momentum[c] / mass_sum;
+  body.initial_spin = vector_of(full.angular_velocity);
 
   Body rules;
   rules.name = body_name;
@@ -377,15 +378,17 @@ const Field all_fields[] = {
     {"position", 3, false},      {"velocity", 3, true},     {"mass", 1, false},        {"volume", 1, false},
     {"stress", 6, true},         {"pressure", 1, false},    {"von_mises", 1, false},   {"energy", 1, true},
     {"plastic_strain", 1, true}, {"temperature", 1, true},  {"failed", 1, false},      {"number", 1, false},
-    {"deformation_gradient", 9, false},
+    {"deformation_gradient", 9, false}, {"affine_velocity", 9, true},
 };
 
-bool has_field(const Material& material, const Field& field) {
+bool has_field(const Model& model, int body, const Field& field) {
+  const Material& material = model.material_of(body);
   const std::string name(field.name);
   if (name == "plastic_strain") return material.plastic();
   if (name == "temperature") return material.thermal();
   if (name == "failed") return material.failure != Failure::None;
   if (name == "deformation_gradient") return material.hyperelastic();
+  if (name == "affine_velocity") return model.numerics.affine();
   return true;
 }
 
@@ -395,8 +398,8 @@ const Field& field_named(const ogive_world* world, ogive_body_id body, const cha
   const Material& material = world->model.material_of(body.index);
   for (const Field& field : all_fields)
     if (std::strcmp(field.name, name) == 0) {
-      if (!has_field(material, field))
-        refuse("field \"" + std::string(name) + "\": the material \"" + material.name + "\" of this body does not keep it");
+      if (!has_field(world->model, body.index, field))
+        refuse("field \"" + std::string(name) + "\": this world does not keep it for a body of material \"" + material.name + "\"");
       return field;
     }
   refuse("field: must be a name that ogive_field_name gives, got \"" + std::string(name) + "\"");
@@ -444,7 +447,8 @@ double field_value(const Model& model, int body_index, const BodyState& body, co
   if (name == "temperature") return body.temperature[p];
   if (name == "failed") return body.plastic_strain[p] >= material.failure_strain ? 1 : 0;
   if (name == "number") return body.number[p];
-  return body.deformation[c][p];
+  if (name == "deformation_gradient") return body.deformation[c][p];
+  return body.affine.empty() ? 0.0 : body.affine[affine_size * p + 4 * (c % 3) + c / 3];
 }
 
 // ------------------------------------------------------------------------------------------------------ save and load
@@ -580,6 +584,9 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
   defaults.time_step_factor = numerics.time_step_factor;
   defaults.maximum_time_step = numerics.maximum_time_step;
   defaults.threads = 1;
+  defaults.transfer = static_cast<std::int32_t>(numerics.transfer);
+  defaults.update_order = static_cast<std::int32_t>(numerics.update_order);
+  defaults.pic_fraction = numerics.pic_fraction;
   initialise(def, size, defaults);
 }
 
@@ -592,6 +599,9 @@ ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_d
     trial.numerics.time_step_factor = full.time_step_factor;
     trial.numerics.maximum_time_step = full.maximum_time_step;
     trial.numerics.gravity = vector_of(full.gravity);
+    trial.numerics.transfer = static_cast<Transfer>(full.transfer);
+    trial.numerics.update_order = static_cast<UpdateOrder>(full.update_order);
+    trial.numerics.pic_fraction = full.pic_fraction;
     trial.validate_numerics();
     set_threads(world, full.threads);
     world->model.numerics = trial.numerics;
@@ -915,12 +925,13 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
       full.external_impulse[c] = state.ledger.external_impulse[c];
     }
     full.friction_dissipation = state.ledger.friction_dissipation;
+    full.transfer_dissipation = state.ledger.transfer_dissipation;
     full.contact_work = state.ledger.contact_work;
     full.boundary_work = state.ledger.boundary_work;
     full.external_work = state.ledger.external_work;
     full.initial_total = state.ledger.initial_total;
-    full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation -
-                 full.external_work;
+    full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation +
+                 full.transfer_dissipation - full.external_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
     deliver(full, ledger, "ledger");
@@ -988,14 +999,14 @@ int32_t ogive_field_count(const ogive_world* world, ogive_body_id body) {
   if (!ogive_body_name(world, body)) return 0;
   std::int32_t count = 0;
   for (const Field& field : all_fields)
-    if (has_field(world->model.material_of(body.index), field)) ++count;
+    if (has_field(world->model, body.index, field)) ++count;
   return count;
 }
 
 const char* ogive_field_name(const ogive_world* world, ogive_body_id body, int32_t index, int32_t* components) {
   if (!ogive_body_name(world, body) || index < 0) return nullptr;
   for (const Field& field : all_fields)
-    if (has_field(world->model.material_of(body.index), field) && index-- == 0) {
+    if (has_field(world->model, body.index, field) && index-- == 0) {
       if (components) *components = field.components;
       return field.name;
     }
@@ -1041,6 +1052,8 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
       if (field_name == "velocity") {
         for (int c = 0; c < 3; ++c) body.velocity[4 * p + c] = v[c];
         fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      } else if (field_name == "affine_velocity") {
+        for (int c = 0; c < 9; ++c) body.affine[affine_size * p + 4 * (c % 3) + c / 3] = v[c];
       } else if (field_name == "stress") {
         for (int c = 0; c < 6; ++c) body.stress[c][p] = v[c];
       } else if (field_name == "energy") {

@@ -106,14 +106,34 @@ enum {
   OGIVE_SHAPE_QUADRATIC_BSPLINE = 1 /* quadratic B-spline, 27 nodes */
 };
 
+/* How velocity travels between particles and grid. */
+enum {
+  OGIVE_TRANSFER_FLIP = 0,        /* particles take the change of the grid's velocity, Huang et al. 2010 Eq. (34) */
+  OGIVE_TRANSFER_AFFINE_FLIP = 1, /* the same, and each particle gives the grid the velocity field around it, v + C (x - x_p),
+                                     with C from the grid's last velocity (Jiang et al. 2015): without the noise of FLIP
+                                     below the grid's resolution, at the price of some energy (transfer_dissipation) */
+  OGIVE_TRANSFER_APIC = 2         /* particles take the grid's velocity itself and C (Jiang et al. 2015) */
+};
+/* When stress is updated. */
+enum {
+  OGIVE_UPDATE_STRESS_FIRST = 0, /* USF, the papers' order: at the beginning of the step */
+  OGIVE_UPDATE_STRESS_LAST = 1   /* MUSL: at the end, from the new velocities mapped once more; a third dearer. With
+                                    trilinear functions it prevents pressures that grow in particles lying at nodes */
+};
+
 typedef struct ogive_numerics_def {
   uint32_t struct_size;
   int32_t shape_function;   /* OGIVE_SHAPE_*. Default quadratic B-spline */
-  double time_step_factor;  /* [-] alpha of Huang et al. 2010 Eq. (35), 0 < alpha <= 1.5. Default 0.8 */
+  double time_step_factor;  /* [-] alpha of Huang et al. 2010 Eq. (35), 0 < alpha <= 1.5. Default 0.5: with affine
+                               velocities a lone particle is stable below 0.58 to 0.73, with FLIP B-splines bear 0.8 */
   double maximum_time_step; /* [T] upper limit, > 0; infinity allowed. Default infinity */
   int32_t threads;          /* 1..1024, 0: all processors that this process may use. Results do not depend on it. Default 1 */
   int32_t reserved0;
   double gravity[3];        /* [L/T2] body force per mass on every body. Default 0 */
+  int32_t transfer;         /* OGIVE_TRANSFER_*. Default affine FLIP */
+  int32_t update_order;     /* OGIVE_UPDATE_*. Default stress first */
+  double pic_fraction;      /* [-] 0..1: part of the grid's own velocity in a particle's new one, each step. Default 0; APIC
+                               has 1 whatever stands here */
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
 OGIVE_API ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_def* def);
@@ -340,7 +360,8 @@ OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_prog
 /* ------------------------------------------------------------------------------------------------------------ results */
 
 /* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
- *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation - external_work
+ *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation
+ *            + transfer_dissipation - external_work
  *   residual = total - initial_total; what no term accounts for
  * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
  * Particles lose less than that (they carry motion that the grid does not see), so these are indicators and part of no
@@ -355,13 +376,15 @@ typedef struct ogive_ledger {
   double left_domain_momentum[3];
   double boundary_impulse[3];  /* [M L/T] given to the material by faces and clamps */
   double external_impulse[3];  /* by gravity */
-  double kinetic;              /* [M L2/T2] */
+  double kinetic;              /* [M L2/T2] with that of the particles' affine velocities */
   double internal;             /* elastic + plastic + thermal */
   double plastic_dissipation;  /* plastic work done so far; part of internal */
   double viscous_dissipation;  /* bulk viscosity work so far; part of internal */
   double failure_loss;         /* elastic energy removed from failed particles */
   double left_domain_energy;   /* kinetic + internal of removed particles */
   double friction_dissipation; /* energy turned to heat by Coulomb friction at nodes */
+  double transfer_dissipation; /* kinetic energy that affine velocities or mixing in the grid's velocity took out: motion
+                                  below the grid's resolution. 0 to round-off with plain FLIP */
   double contact_work;         /* kinetic energy of the grid taken (< 0) by the normal contact forces */
   double boundary_work;        /* likewise by faces and clamps */
   double external_work;        /* by gravity */
@@ -408,8 +431,9 @@ OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_bod
  * those cut off at symmetry planes or removed left out), components of a particle together. All are double.
  *   position 3, velocity 3, mass 1, volume 1 (current), stress 6 (xx yy zz yz xz xy, tension positive),
  *   pressure 1, von_mises 1, energy 1 (internal, per particle), plastic_strain 1, temperature 1, failed 1 (0 or 1),
- *   number 1 (0-based particle number), deformation_gradient 9 (row by row)
- * A body has only the fields its material needs: asking for another is OGIVE_ERROR_ARGUMENT. */
+ *   number 1 (0-based particle number), deformation_gradient 9 (row by row), affine_velocity 9 (dv_i/dx_j of the particle's
+ *   own velocity field, row by row; its kinetic energy is mass h^2/8 times the sum of the squares)
+ * A body has only the fields that its material and the transfer need: asking for another is OGIVE_ERROR_ARGUMENT. */
 OGIVE_API int32_t ogive_field_count(const ogive_world* world, ogive_body_id body);
 /* Name (lives as long as the world) and components of field `index`, NULL if out of range. */
 OGIVE_API const char* ogive_field_name(const ogive_world* world, ogive_body_id body, int32_t index, int32_t* components);
@@ -417,7 +441,7 @@ OGIVE_API const char* ogive_field_name(const ogive_world* world, ogive_body_id b
  * which must be particles * components. */
 OGIVE_API ogive_status ogive_field_get(const ogive_world* world, ogive_body_id body, const char* name, double* values,
                                        int64_t count);
-/* Sets velocity, stress, energy, plastic_strain or temperature in the same layout. */
+/* Sets velocity, affine_velocity, stress, energy, plastic_strain or temperature in the same layout. */
 OGIVE_API ogive_status ogive_field_set(ogive_world* world, ogive_body_id body, const char* name, const double* values,
                                        int64_t count);
 

@@ -68,6 +68,9 @@ class Builder {
     assign(def.maximum_time_step, scene_.numerics.maximum_time_step);
     assign(def.threads, scene_.numerics.threads);
     assign(def.gravity, scene_.numerics.gravity);
+    assign(def.transfer, scene_.numerics.transfer);
+    assign(def.update_order, scene_.numerics.update_order);
+    assign(def.pic_fraction, scene_.numerics.pic_fraction);
     require(ogive_world_set_numerics(world_.get(), &def), "numerics");
   }
 

@@ -98,6 +98,7 @@ void add_ledger(Row& row, const ogive_ledger& ledger) {
   row.add("failure_loss", ledger.failure_loss);
   row.add("left_domain_energy", ledger.left_domain_energy);
   row.add("friction_dissipation", ledger.friction_dissipation);
+  row.add("transfer_dissipation", ledger.transfer_dissipation);
   row.add("contact_work", ledger.contact_work);
   row.add("boundary_work", ledger.boundary_work);
   row.add("external_work", ledger.external_work);
@@ -168,6 +169,7 @@ Json energy_json(const ogive_ledger& ledger) {
   json["failure_loss"] = ledger.failure_loss;
   json["left_domain_energy"] = ledger.left_domain_energy;
   json["friction_dissipation"] = ledger.friction_dissipation;
+  json["transfer_dissipation"] = ledger.transfer_dissipation;
   json["contact_work"] = ledger.contact_work;
   json["boundary_work"] = ledger.boundary_work;
   json["external_work"] = ledger.external_work;

@@ -116,7 +116,8 @@ GridScene read_grid(const Section& root) {
 NumericsScene read_numerics(const Section& root) {
   NumericsScene numerics;
   const auto section = root.optional_table(
-      "numerics", Names{"shape_function", "time_step_factor", "maximum_time_step", "threads", "gravity"});
+      "numerics", Names{"shape_function", "time_step_factor", "maximum_time_step", "threads", "gravity", "transfer",
+                        "update_order", "pic_fraction"});
   if (!section) return numerics;
   numerics.shape_function = section->optional_choice(
       "shape_function", {{"linear", OGIVE_SHAPE_LINEAR}, {"quadratic_bspline", OGIVE_SHAPE_QUADRATIC_BSPLINE}});
@@ -127,6 +128,13 @@ NumericsScene read_numerics(const Section& root) {
     numerics.threads = static_cast<int32_t>(*threads);
   }
   numerics.gravity = section->optional_vector("gravity").value_or(Vector3{});
+  numerics.transfer = section->optional_choice("transfer", {{"flip", OGIVE_TRANSFER_FLIP},
+                                                            {"affine_flip", OGIVE_TRANSFER_AFFINE_FLIP},
+                                                            {"apic", OGIVE_TRANSFER_APIC}});
+  numerics.update_order = section->optional_choice(
+      "update_order", {{"stress_first", OGIVE_UPDATE_STRESS_FIRST}, {"stress_last", OGIVE_UPDATE_STRESS_LAST}});
+  const Range part = {[](double value) { return value >= 0 && value <= 1; }, "between 0 and 1"};
+  numerics.pic_fraction = section->optional_number("pic_fraction", part);
   return numerics;
 }
 

@@ -31,6 +31,9 @@ struct NumericsScene {
   std::optional<double> maximum_time_step;
   std::optional<int32_t> threads;
   Vector3 gravity{};
+  std::optional<int32_t> transfer;
+  std::optional<int32_t> update_order;
+  std::optional<double> pic_fraction;
 };
 
 struct ContactScene {

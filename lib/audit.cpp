@@ -7,6 +7,13 @@
 
 namespace ogive {
 
+double affine_energy(const BodyState& body, std::int64_t p, double cell_size) {
+  if (body.affine.empty()) return 0;
+  double squared = 0;
+  for (int c = 0; c < affine_size; ++c) squared += body.affine[affine_size * p + c] * body.affine[affine_size * p + c];
+  return 0.125 * body.position[4 * p + 3] * cell_size * cell_size * squared;
+}
+
 BodyAudit audit_body(const Model& model, const State& state, int index) {
   const BodyState& body = state.bodies[index];
   const double density = model.material_of(index).density;
@@ -22,6 +29,7 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
       const double mass = x[3];
       part.mass += mass;
       part.kinetic += 0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      part.kinetic += affine_energy(body, p, model.grid.cell_size);
       part.internal += mass / density * body.energy[p];
       for (int c = 0; c < 3; ++c) {
         part.momentum[c] += mass * v[c];
@@ -46,7 +54,8 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
 }
 
 double total_energy(const Model& model, const State& state) {
-  double total = state.ledger.friction_dissipation - state.ledger.external_work;
+  double total =
+      state.ledger.friction_dissipation + state.ledger.transfer_dissipation - state.ledger.external_work;
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
     const BodyAudit audit = audit_body(model, state, b);
     const BodyTotals& totals = state.bodies[b].totals;

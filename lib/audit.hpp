@@ -15,7 +15,10 @@ struct BodyAudit {
 };
 BodyAudit audit_body(const Model& model, const State& state, int body);
 
-// kinetic + internal + failure loss + energy that left + friction heat - external work, of all bodies.
+// Kinetic energy of a particle's affine velocity field, m h^2/8 |C|^2.
+double affine_energy(const BodyState& body, std::int64_t particle, double cell_size);
+
+// kinetic + internal + failure loss + energy that left + friction heat + transfer dissipation - external work, of all bodies.
 double total_energy(const Model& model, const State& state);
 
 // Momentum of the centre of mass alone, for the stop condition.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "audit.hpp"
 #include "error.hpp"
 
 namespace ogive {
@@ -88,7 +89,7 @@ bool has_left(const Model& model, const State& state, const std::string& body, s
   return false;
 }
 
-void book_departure(const Material& material, BodyState& body, std::int64_t p) {
+void book_departure(const Material& material, double cell_size, BodyState& body, std::int64_t p) {
   BodyTotals& totals = body.totals;
   const double* v = &body.velocity[4 * p];
   const double mass = body.position[4 * p + 3];
@@ -96,19 +97,19 @@ void book_departure(const Material& material, BodyState& body, std::int64_t p) {
   totals.left_mass += mass;
   for (int axis = 0; axis < 3; ++axis) totals.left_momentum[axis] += mass * v[axis];
   totals.left_energy +=
-      0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + mass / material.density * body.energy[p];
+      0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + affine_energy(body, p, cell_size) + mass / material.density * body.energy[p];
 }
 
 // New order of a body's particles: `source[i]` is the old place of the particle now at i; padding repeats the last one.
 void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Workspace& workspace) {
   const std::int64_t padded = static_cast<std::int64_t>(source.size());
-  auto records = [&](AlignedVector<double>& array) {
-    workspace.scratch.resize(static_cast<std::size_t>(4 * padded));
+  auto records = [&](AlignedVector<double>& array, int size) {
+    workspace.scratch.resize(static_cast<std::size_t>(size * padded));
     double* to = workspace.scratch.data();
     const double* from = array.data();
 #pragma omp parallel for num_threads(workspace.threads) schedule(static)
     for (std::int64_t i = 0; i < padded; ++i)
-      for (int c = 0; c < 4; ++c) to[4 * i + c] = from[4 * static_cast<std::int64_t>(source[i]) + c];
+      for (int c = 0; c < size; ++c) to[size * i + c] = from[size * static_cast<std::int64_t>(source[i]) + c];
     array.swap(workspace.scratch);
   };
   auto scalars = [&](AlignedVector<double>& array) {
@@ -119,8 +120,9 @@ void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Workspa
     for (std::int64_t i = 0; i < padded; ++i) to[i] = from[source[i]];
     array.swap(workspace.scratch);
   };
-  records(body.position);
-  records(body.velocity);
+  records(body.position, 4);
+  records(body.velocity, 4);
+  if (!body.affine.empty()) records(body.affine, affine_size);
   body.for_each_scalar(scalars);
   AlignedVector<std::int32_t> number(static_cast<std::size_t>(padded));
   for (std::int64_t i = 0; i < padded; ++i) number[i] = body.number[source[i]];
@@ -144,7 +146,7 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   auto take = [&](std::int64_t p) {
     const double* x = &body.position[4 * p];
     if (has_left(model, state, model.bodies[index].name, body.number[p], x)) {
-      book_departure(model.material_of(index), body, p);
+      book_departure(model.material_of(index), grid.cell_size, body, p);
       return;
     }
     std::array<std::int32_t, 3> cell, block;
@@ -405,6 +407,10 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   workspace.stress_sums.resize(workspace.links.size());
   workspace.move_sums.resize(workspace.links.size());
   workspace.slot_contact_force.resize(workspace.slots.size());
+  workspace.slot_given.resize(workspace.slots.size());
+  workspace.displacement.resize(model.numerics.update_order == UpdateOrder::StressLast ? state.bodies.size() : 0);
+  for (std::size_t b = 0; b < workspace.displacement.size(); ++b)
+    workspace.displacement[b].resize(4 * static_cast<std::size_t>(state.bodies[b].padded));
   workspace.linked = true;
 }
 
@@ -416,6 +422,7 @@ KernelGroup kernel_group(const Model& model, const State& state, Workspace& work
   k.end = group.padded_end();
   k.inverse_cell = 1.0 / grid.cell_size;
   k.time_step = dt;
+  k.grid_velocity_fraction = model.numerics.grid_velocity_fraction();
   k.inverse_density = 1.0 / model.material_of(link.body).density;
   for (int axis = 0; axis < 3; ++axis) {
     k.corner[axis] = link.corner[axis];
@@ -442,12 +449,15 @@ KernelParticles kernel_particles(BodyState& body) {
   KernelParticles k;
   k.position = body.position.data();
   k.velocity = body.velocity.data();
+  k.affine = body.affine.data();
   for (int c = 0; c < 6; ++c) k.stress[c] = body.stress[c].data();
   k.volume_ratio = body.volume_ratio.data();
   k.energy = body.energy.data();
   k.plastic_strain = body.plastic_strain.data();
   k.yield_stress = body.yield_stress.data();
   k.temperature = body.temperature.data();
+  k.viscous_pressure = body.viscous_pressure.empty() ? nullptr : body.viscous_pressure.data();
+  k.displacement = nullptr;
   for (int c = 0; c < 9; ++c) k.deformation[c] = body.deformation[c].data();
   return k;
 }
@@ -486,7 +496,8 @@ KernelMaterial kernel_material(const Material& material, double cell_size) {
 std::int64_t Workspace::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
   std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(approach) + bytes(links) + bytes(pencils) + bytes(mixed) +
-                       bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(scratch);
+                       bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
+                       bytes(scratch);
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
   return total;
 }

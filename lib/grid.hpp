@@ -87,6 +87,9 @@ struct Workspace {
   std::vector<MoveSums> move_sums;
   // One entry a slot of a mixed block.
   std::vector<Vector3> slot_contact_force;
+  std::vector<double> slot_given;  // sum of m v . dv over the nodes; one entry a slot
+  // Of each body's particles in this step, records; empty where the stress comes first.
+  std::vector<AlignedVector<double>> displacement;
   AlignedVector<double> scratch;          // for binning
 
   std::int64_t memory_bytes() const;

@@ -125,6 +125,9 @@ void Model::validate_numerics() const {
           numerics.time_step_factor);
   require(numerics.maximum_time_step > 0, "maximum_time_step", "> 0", numerics.maximum_time_step);
   for (int axis = 0; axis < 3; ++axis) require_finite("gravity", numerics.gravity[axis]);
+  require_choice("transfer", numerics.transfer, 3);
+  require(numerics.pic_fraction >= 0 && numerics.pic_fraction <= 1, "pic_fraction", "between 0 and 1", numerics.pic_fraction);
+  require_choice("update_order", numerics.update_order, 2);
 }
 
 void Model::validate_clamp(const Clamp& clamp) const {
@@ -182,6 +185,9 @@ void Model::exchange(Archive& a) {
   a.value("model/numerics/time_step_factor", numerics.time_step_factor);
   a.value("model/numerics/maximum_time_step", numerics.maximum_time_step);
   a.value("model/numerics/gravity", numerics.gravity);
+  a.value("model/numerics/transfer", numerics.transfer);
+  a.value("model/numerics/pic_fraction", numerics.pic_fraction);
+  a.value("model/numerics/update_order", numerics.update_order);
 
   const auto count = [&](const char* name, auto& list, std::int32_t limit) {
     std::int32_t n = static_cast<std::int32_t>(list.size());

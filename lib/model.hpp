@@ -19,6 +19,8 @@ using Vector3 = std::array<double, 3>;
 
 enum class Face : std::int32_t { Free = 0, Symmetry = 1, Fixed = 2 };
 enum class ShapeFunction : std::int32_t { Linear = 0, QuadraticBSpline = 1 };
+enum class Transfer : std::int32_t { Flip = 0, AffineFlip = 1, Apic = 2 };
+enum class UpdateOrder : std::int32_t { StressFirst = 0, StressLast = 1 };
 enum class Strength : std::int32_t { Elastic = 0, NeoHookean = 1, J2Power = 2, JohnsonCook = 3 };
 enum class EquationOfState : std::int32_t { Linear = 0, MieGruneisen = 1 };
 enum class Failure : std::int32_t { None = 0, PlasticStrain = 1 };
@@ -36,9 +38,16 @@ struct Grid {
 
 struct Numerics {
   ShapeFunction shape_function = ShapeFunction::QuadraticBSpline;
-  double time_step_factor = 0.8;
+  double time_step_factor = 0.5;
   double maximum_time_step = std::numeric_limits<double>::infinity();
   Vector3 gravity{};
+  Transfer transfer = Transfer::AffineFlip;
+  double pic_fraction = 0;
+  UpdateOrder update_order = UpdateOrder::StressFirst;
+
+  bool affine() const { return transfer != Transfer::Flip; }
+  // The part of a particle's new velocity that is the grid's own.
+  double grid_velocity_fraction() const { return transfer == Transfer::Apic ? 1.0 : pic_fraction; }
 };
 
 struct Clamp {

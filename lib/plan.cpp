@@ -52,6 +52,13 @@ std::string describe_plan(const Model& model, const State& state, const Workspac
        model.grid.cell_size,
        model.numerics.shape_function == ShapeFunction::Linear ? "trilinear" : "quadratic B-spline",
        workspace.slots.size());
+  static const char* const transfers[] = {"FLIP", "FLIP with affine velocity", "APIC"};
+  const Numerics& numerics = model.numerics;
+  std::string blend;
+  if (numerics.transfer != Transfer::Apic && numerics.pic_fraction > 0)
+    blend = " with " + std::to_string(100 * numerics.pic_fraction) + " % of the grid's velocity a step";
+  line(text, "velocity transfer: %s%s; stress %s", transfers[static_cast<int>(numerics.transfer)], blend.c_str(),
+       numerics.update_order == UpdateOrder::StressFirst ? "first (USF)" : "last (MUSL)");
   line(text, "faces: x %s..%s, y %s..%s, z %s..%s", faces[static_cast<int>(model.grid.face[0])],
        faces[static_cast<int>(model.grid.face[1])], faces[static_cast<int>(model.grid.face[2])],
        faces[static_cast<int>(model.grid.face[3])], faces[static_cast<int>(model.grid.face[4])],

@@ -18,7 +18,7 @@ std::int64_t State::memory_bytes() const {
   std::int64_t total = 0;
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
   for (const BodyState& body : bodies) {
-    total += bytes(body.position) + bytes(body.velocity) + bytes(body.volume_ratio) + bytes(body.energy) +
+    total += bytes(body.position) + bytes(body.velocity) + bytes(body.affine) + bytes(body.viscous_pressure) + bytes(body.volume_ratio) + bytes(body.energy) +
              bytes(body.plastic_strain) + bytes(body.yield_stress) + bytes(body.temperature) + bytes(body.number) +
              bytes(body.groups);
     for (const auto& c : body.stress) total += bytes(c);
@@ -45,6 +45,18 @@ void allocate_particles(const Material& material, std::int64_t padded, BodyState
   body.number.assign(n, -1);
 }
 
+void allocate_transfer(const Model& model, const Material& material, BodyState& body) {
+  const std::size_t n = static_cast<std::size_t>(body.padded);
+  if (model.numerics.affine() && body.affine.empty()) {
+    body.affine.assign(affine_size * n, 0.0);
+    const Vector3& w = body.initial_spin;
+    const double field[affine_size] = {0, w[2], -w[1], 0, -w[2], 0, w[0], 0, w[1], -w[0], 0, 0};
+    for (std::size_t i = 0; i < body.affine.size(); ++i) body.affine[i] = field[i % affine_size];
+  }
+  if (model.numerics.update_order == UpdateOrder::StressLast && material.viscous() && body.viscous_pressure.empty())
+    body.viscous_pressure.assign(n, 0.0);
+}
+
 void State::exchange(const Model& model, Archive& a) {
   if (a.loading()) bodies.assign(model.bodies.size(), BodyState{});
   a.value("state/time", time);
@@ -57,6 +69,7 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/stop/slowed", stop.slowed);
   a.value("state/stop/reason", stop.reason);
   a.value("state/ledger/friction_dissipation", ledger.friction_dissipation);
+  a.value("state/ledger/transfer_dissipation", ledger.transfer_dissipation);
   a.value("state/ledger/contact_work", ledger.contact_work);
   a.value("state/ledger/boundary_work", ledger.boundary_work);
   a.value("state/ledger/external_work", ledger.external_work);
@@ -130,6 +143,9 @@ void State::exchange(const Model& model, Archive& a) {
     if (material.thermal()) a.sized(at + "temperature", body.temperature, n);
     if (material.hyperelastic())
       for (int c = 0; c < 9; ++c) a.sized(at + "deformation_" + std::to_string(c), body.deformation[c], n);
+    if (model.numerics.affine()) a.sized(at + "affine", body.affine, affine_size * n);
+    if (model.numerics.update_order == UpdateOrder::StressLast && material.viscous())
+      a.sized(at + "viscous_pressure", body.viscous_pressure, n);
     a.sized(at + "number", body.number, n);
     if (a.loading()) {
       // Positions must lie where the groups say, or the tiles would be left: the bounds are those of the drift limit.

@@ -21,6 +21,7 @@ class Archive;
 
 constexpr int block_cells = 4;        // cells along an edge of a block
 constexpr int group_padding = 8;      // particles
+constexpr int affine_size = 12;       // doubles of a particle's affine velocity: three records of four
 constexpr int tile_nodes = 7;         // nodes along an edge of a group's tile: the block's 4, one below, two above
 
 struct Group {
@@ -51,15 +52,18 @@ struct BodyState {
   std::int64_t padded = 0;
   AlignedVector<double> position;  // records {x, y, z, mass}
   AlignedVector<double> velocity;  // records {vx, vy, vz, 1}
+  AlignedVector<double> affine;    // three records a particle, dv/dx, dv/dy, dv/dz of its affine velocity field
   std::array<AlignedVector<double>, 6> stress;  // Cauchy: xx yy zz yz xz xy, tension positive
   AlignedVector<double> volume_ratio;           // current / initial volume
   AlignedVector<double> energy;                 // internal energy per initial volume
   AlignedVector<double> plastic_strain;
   AlignedVector<double> yield_stress;           // (A + B eps_p^n)(1 - T*^m) at the current state
   AlignedVector<double> temperature;
+  AlignedVector<double> viscous_pressure;       // waits for the next step's forces where the stress comes last
   std::array<AlignedVector<double>, 9> deformation;  // F row by row
   AlignedVector<std::int32_t> number;                // the particle's number in its body, -1 in the padding
   std::vector<Group> groups;                         // ordered by block: z, then y, then x
+  Vector3 initial_spin{};                            // angular velocity given with the body; the start of `affine`
   bool drifted = false;                              // some particle has left its group's bounds: bin before the next step
   BodyTotals totals;
 
@@ -72,6 +76,7 @@ struct BodyState {
     if (!plastic_strain.empty()) f(plastic_strain);
     if (!yield_stress.empty()) f(yield_stress);
     if (!temperature.empty()) f(temperature);
+    if (!viscous_pressure.empty()) f(viscous_pressure);
     if (!deformation[0].empty())
       for (auto& component : deformation) f(component);
   }
@@ -79,7 +84,7 @@ struct BodyState {
 
 // Momentum and energy that no particle carries; see ogive_ledger.
 struct Ledger {
-  double friction_dissipation = 0, contact_work = 0, boundary_work = 0, external_work = 0;
+  double friction_dissipation = 0, transfer_dissipation = 0, contact_work = 0, boundary_work = 0, external_work = 0;
   Vector3 boundary_impulse{}, external_impulse{};
   double initial_total = 0;
 };
@@ -105,5 +110,7 @@ struct State {
 
 // Gives a body the arrays that its material needs, `padded` long.
 void allocate_particles(const Material& material, std::int64_t padded, BodyState& body);
+// Gives it those that the numerics need, where it has none yet.
+void allocate_transfer(const Model& model, const Material& material, BodyState& body);
 
 }  // namespace ogive

@@ -1,4 +1,6 @@
-// One step of the material point method, update stress first. Equation numbers are those of Huang et al. 2010.
+// One step of the material point method. Equation numbers are those of Huang et al. 2010. Stress first is USF
+// (Bardenhagen 2002), the papers' order; stress last is MUSL (Sulsky, Zhou, Schreyer 1995): the particles' new momentum
+// is mapped once more, from their old places, and gives the strain increment.
 #include "step.hpp"
 
 #include <cmath>
@@ -16,38 +18,58 @@ namespace ogive {
 namespace {
 
 void clear_grid(Workspace& workspace);
+void clear_contacts(Workspace& workspace);
 void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace);
+void map_contact_sums(const Model& model, State& state, Workspace& workspace);
 void nodal_velocities(Workspace& workspace);
-void update_stress_and_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
+void update_stress(const Model& model, State& state, Workspace& workspace, double dt);
+void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
 void trial_velocities(const Model& model, State& state, Workspace& workspace, double dt);
-void accelerations(Workspace& workspace, double dt);
+void accelerations(State& state, Workspace& workspace, double dt);
 void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt);
 
 }  // namespace
 
 void advance_one_step(const Model& model, State& state, Workspace& workspace, double dt) {
+  const bool contact = model.contact_method != ContactMethod::SingleField;
+  const bool second_method = model.contact_method == ContactMethod::HuangSecond;
+  const bool stress_first = model.numerics.update_order == UpdateOrder::StressFirst;
   bin_particles(model, state, workspace, false);                 // particles that left their cells; the domain
   if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
 
   clear_grid(workspace);
-  map_mass_and_momentum(model, state, workspace);                // (27), (28), (9)
+  clear_contacts(workspace);
+  map_mass_and_momentum(model, state, workspace);                // (27), (28)
+  map_contact_sums(model, state, workspace);                     // (9)
   fold_momentum(workspace);                                      // symmetry and fixed faces
+  fold_contact_sums(workspace);
   nodal_velocities(workspace);                                   // (6)
-  if (model.contact_method == ContactMethod::HuangSecond)
-    remove_approach(model, state, workspace);                    // (23)-(25)
-  unfold_velocity(workspace);
-  update_stress_and_internal_force(model, state, workspace, dt); // (29), (30), stress, (31)
+  if (stress_first) {
+    if (second_method) remove_approach(model, state, workspace); // (23)-(25)
+    unfold_velocity(workspace);
+    update_stress(model, state, workspace, dt);                  // (29), (30), stress, (31)
+  } else {
+    map_internal_force(model, state, workspace, dt);             // (31)
+  }
   fold_force(state, workspace, dt);
   trial_velocities(model, state, workspace, dt);                 // (32), (11) or (26)
-  if (model.contact_method == ContactMethod::HuangSecond)
-    restore_approach(workspace);                                 // the jump of (25) belongs to the increment (34)
+  if (stress_first && second_method) restore_approach(workspace); // the jump of (25) belongs to the increment (34)
   hold_faces(state, workspace);
-  if (model.contact_method != ContactMethod::SingleField)
-    apply_contact_force(model, state, workspace, dt);            // (12)-(22), (14)
+  if (contact) apply_contact_force(model, state, workspace, dt); // (12)-(22), (14)
   apply_clamps(state, workspace);
   unfold_motion(state, workspace);
-  accelerations(workspace, dt);
+  accelerations(state, workspace, dt);
   update_velocity_and_position(model, state, workspace, dt);     // (34), (33)
+
+  if (!stress_first) {
+    clear_grid(workspace);
+    map_mass_and_momentum(model, state, workspace);              // (28) of the new velocities from the old places
+    fold_momentum(workspace);
+    nodal_velocities(workspace);
+    if (second_method) remove_approach(model, state, workspace); // (23)-(25), for the strain alone
+    unfold_velocity(workspace);
+    update_stress(model, state, workspace, dt);                  // (29), (30), stress; moves the particles (33)
+  }
 
   state.time += dt;
   state.last_time_step = dt;
@@ -57,6 +79,12 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
 }
 
 namespace {
+
+KernelParticles particles_of(State& state, Workspace& workspace, const GroupLinks& link) {
+  KernelParticles particles = kernel_particles(state.bodies[link.body]);
+  if (!workspace.displacement.empty()) particles.displacement = workspace.displacement[link.body].data();
+  return particles;
+}
 
 // Runs work(link, index) over all groups, colour by colour: the groups of one colour write to disjoint nodes.
 template <class Work>
@@ -90,17 +118,25 @@ void clear_grid(Workspace& workspace) {
 #pragma omp parallel for num_threads(workspace.threads) schedule(static)
   for (std::int64_t s = 0; s < slots; ++s)
     std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0, block_nodes * sizeof(NodeRecord));
+}
+
+void clear_contacts(Workspace& workspace) {
   if (!workspace.contacts.empty())
     std::memset(static_cast<void*>(workspace.contacts.data()), 0, workspace.contacts.size() * sizeof(ContactRecord));
 }
 
 void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace) {
-  const int shape = static_cast<int>(model.numerics.shape_function);
+  const auto map = workspace.kernels->map_momentum[static_cast<int>(model.numerics.shape_function)][model.numerics.affine()];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
-    const KernelGroup group = kernel_group(model, state, workspace, link, 0);
-    const KernelParticles particles = kernel_particles(state.bodies[link.body]);
-    workspace.kernels->map_momentum[shape](group, particles);
-    if (link.contact) workspace.kernels->map_contact[shape](group, particles);
+    map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link));
+  });
+}
+
+void map_contact_sums(const Model& model, State& state, Workspace& workspace) {
+  if (workspace.contacts.empty()) return;
+  const auto map = workspace.kernels->map_contact[static_cast<int>(model.numerics.shape_function)];
+  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+    if (link.contact) map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link));
   });
 }
 
@@ -114,17 +150,25 @@ void nodal_velocities(Workspace& workspace) {
   });
 }
 
-void update_stress_and_internal_force(const Model& model, State& state, Workspace& workspace, double dt) {
+void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt) {
+  const auto map = workspace.kernels->map_internal_force[static_cast<int>(model.numerics.shape_function)];
+  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+    map(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link));
+  });
+}
+
+void update_stress(const Model& model, State& state, Workspace& workspace, double dt) {
   const int shape = static_cast<int>(model.numerics.shape_function);
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
     const Material& material = model.material_of(link.body);
     workspace.kernels->update_stress[shape][static_cast<int>(material.strength)][static_cast<int>(material.eos)](
-        kernel_group(model, state, workspace, link, dt), kernel_particles(state.bodies[link.body]),
+        kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
         workspace.materials[link.body], workspace.stress_sums[index]);
   });
   for (std::size_t l = 0; l < workspace.links.size(); ++l) {
     const StressSums& sums = workspace.stress_sums[l];
     const int b = workspace.links[l].body;
+    state.bodies[b].drifted = state.bodies[b].drifted || sums.outside;
     BodyTotals& totals = state.bodies[b].totals;
     totals.plastic_dissipation += sums.plastic_dissipation;
     totals.viscous_dissipation += sums.viscous_dissipation;
@@ -167,20 +211,39 @@ void trial_velocities(const Model& model, State& state, Workspace& workspace, do
 
 // From {velocity at the beginning, mass | velocity at the end} to {velocity at the end, 0 | acceleration, 0}, which is what
 // (33) and (34) interpolate. The fourth components must vanish: particle records carry mass and 1 there.
-void accelerations(Workspace& workspace, double dt) {
+//
+// Transfer dissipation. The grid gains sum m_I v_I . dv_I. With FLIP that is what the particles gain, sum m_p v_p . dv_p. With
+// affine velocities the rest goes into theirs, m h^2/4 C_p : dC_p, dC_p being the affine part of the increments; but C_p is
+// made anew from the grid, so that of m h^2/8 (|C_p|^2 + 2 C_p : dC_p + |dC_p|^2) only the energy of the new C_p remains.
+// The first sum is booked here, those over particles in the next phase.
+void accelerations(State& state, Workspace& workspace, double dt) {
   const double inverse = 1.0 / dt;
-  for_nodes(workspace, [&](NodeRecord& node) {
-    for (int c = 0; c < 3; ++c) {
-      const double end = node.f[c];
-      node.f[c] = (end - node.v[c]) * inverse;
-      node.v[c] = end;
+  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
+#pragma omp parallel num_threads(workspace.threads)
+  {
+    const FlushSubnormals flush;
+#pragma omp for schedule(static)
+    for (std::int64_t s = 0; s < slots; ++s) {
+      double given = 0;
+      for (std::int64_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {
+        NodeRecord& node = workspace.nodes[i];
+        for (int c = 0; c < 3; ++c) {
+          const double start = node.v[c], end = node.f[c];
+          given += node.v[3] * start * (end - start);
+          node.f[c] = (end - start) * inverse;
+          node.v[c] = end;
+        }
+        node.v[3] = node.f[3] = 0;
+      }
+      workspace.slot_given[s] = given;
     }
-    node.v[3] = node.f[3] = 0;
-  });
+  }
+  for (const double given : workspace.slot_given) state.ledger.transfer_dissipation += given;
 }
 
 void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt) {
-  const int shape = static_cast<int>(model.numerics.shape_function);
+  const auto update =
+      workspace.kernels->update_particles[static_cast<int>(model.numerics.shape_function)][model.numerics.affine()];
   const std::int32_t count = static_cast<std::int32_t>(workspace.pencils.size());
 #pragma omp parallel num_threads(workspace.threads) if (count > 1)
   {
@@ -189,8 +252,8 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
     for (std::int32_t p = 0; p < count; ++p)
       for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
         const GroupLinks& link = workspace.links[l];
-        workspace.kernels->update_particles[shape](kernel_group(model, state, workspace, link, dt),
-                                                   kernel_particles(state.bodies[link.body]), workspace.move_sums[l]);
+        update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
+               workspace.move_sums[l]);
       }
   }
   for (BodyState& body : state.bodies) body.totals.maximum_speed = 0;
@@ -198,8 +261,8 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
     BodyState& body = state.bodies[workspace.links[l].body];
     const MoveSums& sums = workspace.move_sums[l];
     body.drifted = body.drifted || sums.outside;
-    const double speed = std::sqrt(sums.speed_squared);
-    body.totals.maximum_speed = std::max(body.totals.maximum_speed, speed);
+    body.totals.maximum_speed = std::max(body.totals.maximum_speed, std::sqrt(sums.speed_squared));
+    state.ledger.transfer_dissipation -= sums.taken_up;
   }
   for (BodyState& body : state.bodies)
     body.totals.maximum_speed_ever = std::max(body.totals.maximum_speed_ever, body.totals.maximum_speed);
@@ -212,6 +275,8 @@ void prepare_state(const Model& model, State& state, Workspace& workspace) {
   workspace.materials.clear();
   for (const Body& body : model.bodies)
     workspace.materials.push_back(kernel_material(model.materials[body.material], model.grid.cell_size));
+  for (std::size_t b = 0; b < state.bodies.size(); ++b)
+    allocate_transfer(model, model.materials[model.bodies[b].material], state.bodies[b]);
   bool fresh = false;
   for (const BodyState& body : state.bodies) fresh = fresh || (body.groups.empty() && body.particles > 0);
   if (fresh) bin_particles(model, state, workspace, true);

@@ -17,27 +17,35 @@ void fold_momentum(Workspace& workspace) {
       for (int c = 0; c < 3; ++c) image.v[c] += mirror_sign(face, c) * ghost.v[c];
       image.v[3] += ghost.v[3];
       for (double& c : ghost.v) c = 0;
-      const std::int32_t from = workspace.slots[pair.ghost / block_nodes].contact;
-      const std::int32_t to = workspace.slots[pair.image / block_nodes].contact;
-      if (from >= 0 && to >= 0) {
-        ContactRecord& source = workspace.contacts[from * block_nodes + pair.ghost % block_nodes];
-        ContactRecord& target = workspace.contacts[to * block_nodes + pair.image % block_nodes];
-        for (int c = 0; c < 3; ++c) target.gradient[c] += (c == face.axis ? -1.0 : 1.0) * source.gradient[c];
-        target.volume += source.volume;
-        source = {};
-      }
     }
     for (const std::int64_t node : face.plane) {
       NodeRecord& record = workspace.nodes[node];
       for (int c = 0; c < 3; ++c)
         if (mirror_sign(face, c) < 0) record.v[c] = 0;
+    }
+  }
+}
+
+void fold_contact_sums(Workspace& workspace) {
+  if (workspace.contacts.empty()) return;
+  for (const FaceNodes& face : workspace.faces) {
+    for (const MirrorPair& pair : face.pairs) {
+      const std::int32_t from = workspace.slots[pair.ghost / block_nodes].contact;
+      const std::int32_t to = workspace.slots[pair.image / block_nodes].contact;
+      if (from < 0 || to < 0) continue;
+      ContactRecord& source = workspace.contacts[from * block_nodes + pair.ghost % block_nodes];
+      ContactRecord& target = workspace.contacts[to * block_nodes + pair.image % block_nodes];
+      for (int c = 0; c < 3; ++c) target.gradient[c] += (c == face.axis ? -1.0 : 1.0) * source.gradient[c];
+      target.volume += source.volume;
+      source = {};
+    }
+    for (const std::int64_t node : face.plane) {
       const std::int32_t contact = workspace.slots[node / block_nodes].contact;
-      if (contact >= 0) {
-        // The mirrored half doubles what lies along the face and cancels what is normal to it.
-        ContactRecord& sums = workspace.contacts[contact * block_nodes + node % block_nodes];
-        for (int c = 0; c < 3; ++c) sums.gradient[c] *= c == face.axis ? 0.0 : 2.0;
-        sums.volume *= 2;
-      }
+      if (contact < 0) continue;
+      // The mirrored half doubles what lies along the face and cancels what is normal to it.
+      ContactRecord& sums = workspace.contacts[contact * block_nodes + node % block_nodes];
+      for (int c = 0; c < 3; ++c) sums.gradient[c] *= c == face.axis ? 0.0 : 2.0;
+      sums.volume *= 2;
     }
   }
 }

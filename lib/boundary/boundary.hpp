@@ -15,6 +15,7 @@ namespace ogive {
 
 // After mapping, node records hold {momentum, mass | -} and contact records their sums: folds ghosts into images.
 void fold_momentum(Workspace& workspace);
+void fold_contact_sums(Workspace& workspace);
 // Gives ghosts the velocity of their images (records hold velocities).
 void unfold_velocity(Workspace& workspace);
 // After the stress update: folds forces, and books the normal impulse of the faces before contact.

@@ -210,10 +210,12 @@ double surface_distance(ShapeFunction shape, double fraction) {
 }
 
 void remove_approach(const Model& model, State& state, Workspace& workspace) {
+  // Where the stress comes last only the strain sees it, and the grid loses nothing.
+  const double booked = model.numerics.update_order == UpdateOrder::StressFirst ? 1.0 : 0.0;
   std::fill(workspace.approach.begin(), workspace.approach.end(), Vec3{});
   for_contact_nodes(
       model, state, workspace, false, [&](ContactNode& contact, const MixedBlock& block, int node, BlockSums& sums) {
-        contact.resolve(false, [&](int, int, const Vec3&, double, double loss) { sums.contact_work -= loss; });
+        contact.resolve(false, [&](int, int, const Vec3&, double, double loss) { sums.contact_work -= booked * loss; });
         for (const FieldAtNode& field : contact.fields()) {
           const std::size_t slot = static_cast<std::size_t>(block.first_slot) + field.slot;
           double* v = workspace.nodes[slot * block_nodes + node].v;

@@ -134,10 +134,14 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
   s.plastic_changed = false;
 
   if constexpr (strength == strength_neo_hookean) {
-    V F[3][3];
+    // F := (I + L + L L / 2) F, to second order so that a rotation does not stretch.
+    V A[3][3], F[3][3];
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        F[i][j] = s.F[i][j] + s.L[i][0] * s.F[0][j] + s.L[i][1] * s.F[1][j] + s.L[i][2] * s.F[2][j];
+        A[i][j] = s.L[i][0] * s.F[0][j] + s.L[i][1] * s.F[1][j] + s.L[i][2] * s.F[2][j];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        F[i][j] = s.F[i][j] + A[i][j] + 0.5 * (s.L[i][0] * A[0][j] + s.L[i][1] * A[1][j] + s.L[i][2] * A[2][j]);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) s.F[i][j] = F[i][j];
     J1 = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +

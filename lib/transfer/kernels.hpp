@@ -27,6 +27,7 @@ struct KernelGroup {
   double corner[3];               // position of the tile's first node
   double inverse_cell;            // 1 / h
   double time_step;
+  double grid_velocity_fraction;  // part of a particle's new velocity that is the grid's: 0 FLIP, 1 PIC and APIC
   double inverse_density;         // 1 / initial density
   std::int32_t tile_low[3], tile_high[3];  // nodes of the tile in use, inclusive
   NodeRecord* nodes[27];          // node records of the neighbour blocks, x fastest, null where none is touched
@@ -37,12 +38,15 @@ struct KernelGroup {
 struct KernelParticles {
   double* position;
   double* velocity;
+  double* affine;        // three records a particle
   double* stress[6];
   double* volume_ratio;
   double* energy;
   double* plastic_strain;
   double* yield_stress;
   double* temperature;
+  double* viscous_pressure;  // null: the viscous pressure of a step acts in the same step or there is none
+  double* displacement;      // records; null: stress first. Otherwise the stress comes last and moves the particles
   double* deformation[9];
 };
 
@@ -65,23 +69,27 @@ struct StressSums {
   double failure_loss, failed_mass;
   std::int64_t failed_particles;
   std::int64_t bad_particle;    // first particle with a volume that is not positive and finite, -1: none
+  bool outside;                 // as in MoveSums, where the stress update moves the particles
 };
 
 struct MoveSums {
   double speed_squared;         // largest |v|^2
+  double taken_up;              // sum of m v . (increment), less what the particles lose: see transfer dissipation in step.cpp
   bool outside;                 // a particle is outside its bounds (or not a number)
 };
 
 struct KernelTable {
   const char* name;
-  // Nodal mass and momentum, Eqs. (27) and (28), by shape function.
-  void (*map_momentum[2])(const KernelGroup&, const KernelParticles&);
+  // Nodal mass and momentum, Eqs. (27) and (28), by shape function, without and with affine velocity.
+  void (*map_momentum[2][2])(const KernelGroup&, const KernelParticles&);
   // Sums for the normals, Eq. (9), and the fill of nodes.
   void (*map_contact[2])(const KernelGroup&, const KernelParticles&);
   // Eqs. (29)-(31) by shape function, strength and equation of state.
   void (*update_stress[2][4][2])(const KernelGroup&, const KernelParticles&, const KernelMaterial&, StressSums&);
-  // Eqs. (33), (34).
-  void (*update_particles[2])(const KernelGroup&, const KernelParticles&, MoveSums&);
+  // Eq. (31) by itself, for the stress that an earlier step left.
+  void (*map_internal_force[2])(const KernelGroup&, const KernelParticles&);
+  // Eqs. (33), (34) by shape function, without and with affine velocity.
+  void (*update_particles[2][2])(const KernelGroup&, const KernelParticles&, MoveSums&);
 };
 
 // The best table for this processor, or the one that the environment variable OGIVE_ISA names (x86-64-v2, x86-64-v3,

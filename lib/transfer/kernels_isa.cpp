@@ -16,10 +16,13 @@ namespace OGIVE_ISA_NAMESPACE {
 extern const KernelTable table;
 const KernelTable table = {
     OGIVE_TEXT(OGIVE_ISA_NAMESPACE),
-    {map_momentum<LinearShape>, map_momentum<QuadraticBSplineShape>},
+    {{map_momentum<LinearShape, false>, map_momentum<LinearShape, true>},
+     {map_momentum<QuadraticBSplineShape, false>, map_momentum<QuadraticBSplineShape, true>}},
     {map_contact<LinearShape>, map_contact<QuadraticBSplineShape>},
     {OGIVE_LAWS(LinearShape), OGIVE_LAWS(QuadraticBSplineShape)},
-    {update_particles<LinearShape>, update_particles<QuadraticBSplineShape>},
+    {map_internal_force<LinearShape>, map_internal_force<QuadraticBSplineShape>},
+    {{update_particles<LinearShape, false>, update_particles<LinearShape, true>},
+     {update_particles<QuadraticBSplineShape, false>, update_particles<QuadraticBSplineShape, true>}},
 };
 
 }  // namespace OGIVE_ISA_NAMESPACE

@@ -1,5 +1,6 @@
 // Velocity gradient to strain increment (29), density (30), stress, and internal force (31) in one pass over a group:
-// Huang et al. 2010, section 4, steps 4 and 5.
+// Huang et al. 2010, section 4, steps 4 and 5. Where the stress comes last (MUSL), the pass moves the particles instead, by
+// the displacement that the particle update left, and the force is mapped by itself in the next step.
 #pragma once
 
 #include "materials/law.hpp"
@@ -7,6 +8,51 @@
 
 namespace ogive {
 namespace OGIVE_ISA_NAMESPACE {
+
+// Adds -V (sigma - q I) grad N, Eq. (31), for four particles; `volume` is the present one.
+template <class Shape>
+OGIVE_INLINE void scatter_stress(const Weights<Shape>& weights, Lanes volume, const Symmetric<Lanes>& stress, Lanes q,
+                                 Record* force) {
+  volume = -volume;
+  Lanes X[4] = {volume * (stress.xx - q), volume * stress.xy, volume * stress.xz, Lanes{}};
+  Lanes Y[4] = {X[1], volume * (stress.yy - q), volume * stress.yz, Lanes{}};
+  Lanes Z[4] = {X[2], Y[2], volume * (stress.zz - q), Lanes{}};
+  transpose(X[0], X[1], X[2], X[3]);
+  transpose(Y[0], Y[1], Y[2], Y[3]);
+  transpose(Z[0], Z[1], Z[2], Z[3]);
+  for (int lane = 0; lane < lane_count; ++lane)
+    scatter_gradient<Shape>(weights, lane, X[lane], Y[lane], Z[lane], force);
+}
+
+OGIVE_INLINE void add_force(const KernelGroup& group, const Record* force) {
+  for_tile_nodes(group, [&](int t, int block, int node) {
+    double* f = group.nodes[block][node].f;
+    store_aligned(f, load_aligned<Record>(f) + force[t]);
+  });
+}
+
+OGIVE_INLINE Symmetric<Lanes> load_stress(const KernelParticles& particles, std::int64_t p) {
+  return {load_aligned<Lanes>(particles.stress[0] + p), load_aligned<Lanes>(particles.stress[1] + p),
+          load_aligned<Lanes>(particles.stress[2] + p), load_aligned<Lanes>(particles.stress[3] + p),
+          load_aligned<Lanes>(particles.stress[4] + p), load_aligned<Lanes>(particles.stress[5] + p)};
+}
+
+// Eq. (31) by itself.
+template <class Shape>
+void map_internal_force(const KernelGroup& group, const KernelParticles& particles) {
+  alignas(64) Record force[tile_size];
+  clear_tile(group, force);
+  Weights<Shape> weights;
+  for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
+    Lanes x, y, z, mass;
+    load_records(particles.position + 4 * p, x, y, z, mass);
+    fill<Beside::Derivatives>(weights, group, x, y, z);
+    const Lanes volume = mass * group.inverse_density * load_aligned<Lanes>(particles.volume_ratio + p);
+    const Lanes q = particles.viscous_pressure ? load_aligned<Lanes>(particles.viscous_pressure + p) : Lanes{};
+    scatter_stress<Shape>(weights, volume, load_stress(particles, p), q, force);
+  }
+  add_force(group, force);
+}
 
 template <class Shape, int strength, int eos>
 void update_stress(const KernelGroup& group, const KernelParticles& particles, const KernelMaterial& material,
@@ -20,6 +66,8 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
     force[t] = Record{};
   });
 
+  const Record low = load<Record>(group.bound_low), high = load<Record>(group.bound_high);
+  IntVec<4> all_inside = low <= high;
   Lanes fastest{}, plastic_work{}, viscous_work{};
   sums.failure_loss = sums.failed_mass = 0;
   sums.failed_particles = 0;
@@ -28,12 +76,12 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
   for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
     Lanes x, y, z, mass;
     load_records(particles.position + 4 * p, x, y, z, mass);
-    Weights<Shape>::fill(weights, group, x, y, z, true);
+    fill<Beside::Derivatives>(weights, group, x, y, z);
 
     // Rows of records to lanes: after the transposes gradient[j][i] holds dv_i/dx_j of four particles.
     Record gradient[3][lane_count], motion[lane_count];
     for (int lane = 0; lane < lane_count; ++lane)
-      gather_gradient<Shape>(weights, lane, velocity + static_cast<std::int64_t>(weights.first[lane]), motion[lane],
+      gather_gradient<Shape>(weights, lane, velocity + static_cast<std::int64_t>(weights.first[lane]), 1, motion[lane],
                              gradient[0][lane], gradient[1][lane], gradient[2][lane]);
     transpose(motion[0], motion[1], motion[2], motion[3]);
     LawState<Lanes> s;
@@ -44,10 +92,7 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
       for (int i = 0; i < 3; ++i) s.L[i][j] = gradient[j][i] * group.time_step;
     }
 
-    if constexpr (!hyperelastic)
-      s.stress = {load_aligned<Lanes>(particles.stress[0] + p), load_aligned<Lanes>(particles.stress[1] + p),
-                  load_aligned<Lanes>(particles.stress[2] + p), load_aligned<Lanes>(particles.stress[3] + p),
-                  load_aligned<Lanes>(particles.stress[4] + p), load_aligned<Lanes>(particles.stress[5] + p)};
+    if constexpr (!hyperelastic) s.stress = load_stress(particles, p);
     s.volume_ratio = load_aligned<Lanes>(particles.volume_ratio + p);
     s.energy = load_aligned<Lanes>(particles.energy + p);
     if constexpr (plastic) {
@@ -99,22 +144,21 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
         if (!(s.volume_ratio[lane] > 1e-6 && s.volume_ratio[lane] < 1e6 && s.wave_speed_squared[lane] < 1e300))
           sums.bad_particle = p + lane;
 
-    // Eq. (31): -V sigma grad N.
-    const Lanes volume = -initial_volume * s.volume_ratio;
-    Lanes X[4] = {volume * (s.stress.xx - s.viscous_pressure), volume * s.stress.xy, volume * s.stress.xz, Lanes{}};
-    Lanes Y[4] = {X[1], volume * (s.stress.yy - s.viscous_pressure), volume * s.stress.yz, Lanes{}};
-    Lanes Z[4] = {X[2], Y[2], volume * (s.stress.zz - s.viscous_pressure), Lanes{}};
-    transpose(X[0], X[1], X[2], X[3]);
-    transpose(Y[0], Y[1], Y[2], Y[3]);
-    transpose(Z[0], Z[1], Z[2], Z[3]);
-    for (int lane = 0; lane < lane_count; ++lane)
-      scatter_gradient<Shape>(weights, lane, X[lane], Y[lane], Z[lane], force);
+    if (particles.displacement) {
+      if (particles.viscous_pressure) store_aligned(particles.viscous_pressure + p, s.viscous_pressure);
+      for (int lane = 0; lane < lane_count; ++lane) {
+        double* position = particles.position + 4 * (p + lane);
+        const Record moved =
+            load_aligned<Record>(position) + load_aligned<Record>(particles.displacement + 4 * (p + lane));
+        all_inside &= (moved >= low) & (moved <= high);
+        store_aligned(position, moved);
+      }
+    } else {
+      scatter_stress<Shape>(weights, initial_volume * s.volume_ratio, s.stress, s.viscous_pressure, force);
+    }
   }
-
-  for_tile_nodes(group, [&](int t, int block, int node) {
-    double* f = group.nodes[block][node].f;
-    store_aligned(f, load_aligned<Record>(f) + force[t]);
-  });
+  if (!particles.displacement) add_force(group, force);
+  sums.outside = !all(all_inside);
   sums.fastest = 0;
   sums.plastic_dissipation = sums.viscous_dissipation = 0;
   for (int lane = 0; lane < lane_count; ++lane) {

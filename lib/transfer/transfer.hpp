@@ -1,5 +1,11 @@
 // Maps between the particles of a group and its tile: Huang et al. 2010, Eqs. (27), (28), (9), (29), (31), (33), (34).
 //
+// Affine velocity (Jiang, Schroeder, Selle, Teran, Stomakhin 2015): a particle carries the field v_p + C_p (x - x_p), and
+//   (28)  p_I = sum m_p N (v_p + C_p (x_I - x_p)),     C_p = 4/h^2 sum_I N v_I (x_I - x_p)^T.
+// h^2/4 is the second moment of the quadratic B-spline. For trilinear functions, whose moment xi (1 - xi) h^2 vanishes at
+// the nodes, it is its largest value: C_p is then the velocity gradient times 4 xi (1 - xi), which keeps it bounded where
+// a particle touches a node with next to no mass.
+//
 // Four particles at a time: their weights are computed lane by lane and kept in small arrays, then each particle meets
 // its nodes as records of four doubles, one fused multiply-add a node and sum. Sums over nodes are nested (z, y, x), so
 // that the products of weights are never formed.
@@ -16,28 +22,37 @@ namespace OGIVE_ISA_NAMESPACE {
 using Lanes = Vec<4>;
 constexpr int lane_count = 4;
 
-// Weights of four particles, by axis, node and particle; derivatives are per length (d/dx, not d/dxi).
+// What goes with the weights: derivatives per length (d/dx, not d/dxi), moments 4 N (x_I - x_p) / h^2, or distances.
+enum class Beside { Nothing, Derivatives, Moments, Distances };
+
+// Weights of four particles, by axis, node and particle.
 template <class Shape>
 struct Weights {
   static constexpr int N = Shape::nodes;
   alignas(32) double w[3][N][lane_count];
-  alignas(32) double d[3][N][lane_count];
-  alignas(32) double first[lane_count];  // tile node of the first weight, as a whole number
-
-  OGIVE_INLINE void fill(Weights& weights, const KernelGroup& group, Lanes x, Lanes y, Lanes z, bool derivatives) {
-    const Lanes position[3] = {x, y, z};
-    Lanes base[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      Lanes w[N], d[N];
-      Shape::at((position[axis] - group.corner[axis]) * group.inverse_cell, base[axis], w, d);
-      for (int n = 0; n < N; ++n) {
-        store_aligned(weights.w[axis][n], w[n]);
-        if (derivatives) store_aligned(weights.d[axis][n], d[n] * group.inverse_cell);
-      }
-    }
-    store_aligned(weights.first, (base[2] * tile_edge + base[1]) * tile_edge + base[0]);
-  }
+  alignas(32) double d[3][N][lane_count];  // derivatives, moments or distances x_I - x_p
+  alignas(32) double first[lane_count];    // tile node of the first weight, as a whole number
 };
+
+template <Beside beside, class Shape>
+OGIVE_INLINE void fill(Weights<Shape>& weights, const KernelGroup& group, Lanes x, Lanes y, Lanes z) {
+  constexpr int N = Shape::nodes;
+  const Lanes position[3] = {x, y, z};
+  Lanes base[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    Lanes w[N], d[N];
+    const Lanes xi = (position[axis] - group.corner[axis]) * group.inverse_cell;
+    Shape::at(xi, base[axis], w, d);
+    for (int n = 0; n < N; ++n) {
+      store_aligned(weights.w[axis][n], w[n]);
+      const Lanes distance = base[axis] + static_cast<double>(n) - xi;  // in cells
+      if (beside == Beside::Derivatives) store_aligned(weights.d[axis][n], d[n] * group.inverse_cell);
+      if (beside == Beside::Moments) store_aligned(weights.d[axis][n], distance * w[n] * (4.0 * group.inverse_cell));
+      if (beside == Beside::Distances) store_aligned(weights.d[axis][n], distance * (1.0 / group.inverse_cell));
+    }
+  }
+  store_aligned(weights.first, (base[2] * tile_edge + base[1]) * tile_edge + base[0]);
+}
 
 // Adds q N at each node of one particle to the tile.
 template <class Shape>
@@ -53,6 +68,27 @@ OGIVE_INLINE void scatter_value(const Weights<Shape>& weights, int lane, Record 
       Record* row = first + (k * tile_edge + j) * tile_edge;
 #pragma GCC unroll 3
       for (int i = 0; i < N; ++i) row[i] += q_zy * weights.w[0][i][lane];
+    }
+  }
+}
+
+// Adds (q + X x + Y y + Z z) N at each node of one particle to the tile, (x, y, z) the distance from particle to node.
+template <class Shape>
+OGIVE_INLINE void scatter_affine(const Weights<Shape>& weights, int lane, Record q, Record X, Record Y, Record Z,
+                                 Record* tile) {
+  constexpr int N = Shape::nodes;
+  Record* first = tile + static_cast<std::int64_t>(weights.first[lane]);
+#pragma GCC unroll 3
+  for (int k = 0; k < N; ++k) {
+    const Record q_z = (q + Z * weights.d[2][k][lane]) * weights.w[2][k][lane];
+    const Record X_z = X * weights.w[2][k][lane], Y_z = Y * weights.w[2][k][lane];
+#pragma GCC unroll 3
+    for (int j = 0; j < N; ++j) {
+      const Record q_zy = (q_z + Y_z * weights.d[1][j][lane]) * weights.w[1][j][lane];
+      const Record X_zy = X_z * weights.w[1][j][lane];
+      Record* row = first + (k * tile_edge + j) * tile_edge;
+#pragma GCC unroll 3
+      for (int i = 0; i < N; ++i) row[i] += (q_zy + X_zy * weights.d[0][i][lane]) * weights.w[0][i][lane];
     }
   }
 }
@@ -97,10 +133,10 @@ OGIVE_INLINE Record gather_value(const Weights<Shape>& weights, int lane, const 
   return sum;
 }
 
-// Sums of N, dN/dx, dN/dy, dN/dz times the node's record.
+// Sums of N, dN/dx, dN/dy, dN/dz times the node's record; with moments in place of derivatives, the affine velocity.
 template <class Shape>
-OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const Record* first, Record& value, Record& dx,
-                                  Record& dy, Record& dz) {
+OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const Record* first, int stride, Record& value,
+                                  Record& dx, Record& dy, Record& dz) {
   constexpr int N = Shape::nodes;
   value = dx = dy = dz = Record{};
 #pragma GCC unroll 3
@@ -108,12 +144,12 @@ OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const
     Record value_y{}, dx_y{}, dy_y{};
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
-      const Record* row = first + (k * tile_edge + j) * tile_edge;
+      const Record* row = first + (k * tile_edge + j) * tile_edge * stride;
       Record value_x{}, dx_x{};
 #pragma GCC unroll 3
       for (int i = 0; i < N; ++i) {
-        value_x += row[i] * weights.w[0][i][lane];
-        dx_x += row[i] * weights.d[0][i][lane];
+        value_x += row[i * stride] * weights.w[0][i][lane];
+        dx_x += row[i * stride] * weights.d[0][i][lane];
       }
       value_y += value_x * weights.w[1][j][lane];
       dx_y += dx_x * weights.w[1][j][lane];
@@ -127,7 +163,7 @@ OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const
 }
 
 // Eqs. (27), (28): nodal mass and momentum.
-template <class Shape>
+template <class Shape, bool affine>
 void map_momentum(const KernelGroup& group, const KernelParticles& particles) {
   alignas(64) Record tile[tile_size];
   clear_tile(group, tile);
@@ -135,12 +171,18 @@ void map_momentum(const KernelGroup& group, const KernelParticles& particles) {
   for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
     Lanes x, y, z, mass;
     load_records(particles.position + 4 * p, x, y, z, mass);
-    Weights<Shape>::fill(weights, group, x, y, z, false);
+    fill<affine ? Beside::Distances : Beside::Nothing>(weights, group, x, y, z);
     for (int lane = 0; lane < lane_count; ++lane) {
       // The fourth component of a velocity record is 1: the mass comes along.
-      const Record momentum =
-          load_aligned<Record>(particles.velocity + 4 * (p + lane)) * particles.position[4 * (p + lane) + 3];
-      scatter_value<Shape>(weights, lane, momentum, tile);
+      const double m = particles.position[4 * (p + lane) + 3];
+      const Record momentum = load_aligned<Record>(particles.velocity + 4 * (p + lane)) * m;
+      if (affine) {
+        const double* C = particles.affine + 12 * (p + lane);
+        scatter_affine<Shape>(weights, lane, momentum, load_aligned<Record>(C) * m, load_aligned<Record>(C + 4) * m,
+                              load_aligned<Record>(C + 8) * m, tile);
+      } else {
+        scatter_value<Shape>(weights, lane, momentum, tile);
+      }
     }
   }
   for_tile_nodes(group, [&](int t, int block, int node) {
@@ -159,7 +201,7 @@ void map_contact(const KernelGroup& group, const KernelParticles& particles) {
   for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
     Lanes x, y, z, mass;
     load_records(particles.position + 4 * p, x, y, z, mass);
-    Weights<Shape>::fill(weights, group, x, y, z, true);
+    fill<Beside::Derivatives>(weights, group, x, y, z);
     const Lanes ratio = load_aligned<Lanes>(particles.volume_ratio + p);
     alignas(32) double volume[lane_count];
     store_aligned(volume, mass * group.inverse_density * min(ratio, broadcast<Lanes>(1.0)));
@@ -176,8 +218,8 @@ void map_contact(const KernelGroup& group, const KernelParticles& particles) {
   });
 }
 
-// Eqs. (33), (34).
-template <class Shape>
+// Eqs. (33), (34). What PIC and APIC put in place of the increment, or a part of it, is the grid's own velocity.
+template <class Shape, bool affine>
 void update_particles(const KernelGroup& group, const KernelParticles& particles, MoveSums& sums) {
   alignas(64) Record tile[2 * tile_size];  // velocity, acceleration
   for_tile_nodes(group, [&](int t, int block, int node) {
@@ -186,30 +228,63 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
     tile[2 * t + 1] = load_aligned<Record>(record.f);
   });
   const Record low = load<Record>(group.bound_low), high = load<Record>(group.bound_high);
+  const double from_grid = group.grid_velocity_fraction, kept = 1.0 - from_grid;
   IntVec<4> all_inside = low <= high;
   Lanes speed_squared{};
+  const double time_step_squared = group.time_step * group.time_step;
+  Record power{}, lost{}, lost_affine{};
   Weights<Shape> weights;
   for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
     Lanes x, y, z, mass;
     load_records(particles.position + 4 * p, x, y, z, mass);
-    Weights<Shape>::fill(weights, group, x, y, z, false);
+    fill<affine ? Beside::Moments : Beside::Nothing>(weights, group, x, y, z);
     Record v[lane_count];
     for (int lane = 0; lane < lane_count; ++lane) {
       const Record* first = tile + 2 * static_cast<std::int64_t>(weights.first[lane]);
-      const Record velocity = gather_value<Shape>(weights, lane, first, 2);
-      const Record acceleration = gather_value<Shape>(weights, lane, first + 1, 2);
       double* position = particles.position + 4 * (p + lane);
-      const Record moved = load_aligned<Record>(position) + velocity * group.time_step;
-      all_inside &= (moved >= low) & (moved <= high);
-      store_aligned(position, moved);
+      Record velocity, acceleration;
+      if (affine) {
+        Record X, Y, Z, dX, dY, dZ;
+        gather_gradient<Shape>(weights, lane, first, 2, velocity, X, Y, Z);
+        gather_gradient<Shape>(weights, lane, first + 1, 2, acceleration, dX, dY, dZ);
+        double* C = particles.affine + 12 * (p + lane);
+        const Record X_0 = load_aligned<Record>(C), Y_0 = load_aligned<Record>(C + 4), Z_0 = load_aligned<Record>(C + 8);
+        lost_affine += (X_0 * X_0 + Y_0 * Y_0 + Z_0 * Z_0 - X * X - Y * Y - Z * Z +
+                        (dX * dX + dY * dY + dZ * dZ) * time_step_squared) * position[3];
+        store_aligned(C, X);
+        store_aligned(C + 4, Y);
+        store_aligned(C + 8, Z);
+      } else {
+        velocity = gather_value<Shape>(weights, lane, first, 2);
+        acceleration = gather_value<Shape>(weights, lane, first + 1, 2);
+      }
+      const Record displacement = velocity * group.time_step;
+      if (particles.displacement) {
+        store_aligned(particles.displacement + 4 * (p + lane), displacement);
+      } else {
+        const Record moved = load_aligned<Record>(position) + displacement;
+        all_inside &= (moved >= low) & (moved <= high);
+        store_aligned(position, moved);
+      }
       double* to = particles.velocity + 4 * (p + lane);
-      v[lane] = load_aligned<Record>(to) + acceleration * group.time_step;
+      const Record old = load_aligned<Record>(to);
+      const Record increment = acceleration * group.time_step;
+      v[lane] = old + increment;
+      power += old * increment * position[3];
+      if (from_grid != 0) {
+        const Record flip = v[lane];
+        v[lane] = flip * kept + velocity * from_grid;
+        v[lane][3] = 1.0;
+        lost += (flip - v[lane]) * (flip + v[lane]) * position[3];
+      }
       store_aligned(to, v[lane]);
     }
     transpose(v[0], v[1], v[2], v[3]);
     speed_squared = max(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], speed_squared);
   }
   sums.outside = !all(all_inside);
+  lost += lost_affine * (0.25 / (group.inverse_cell * group.inverse_cell));
+  sums.taken_up = power[0] + power[1] + power[2] - 0.5 * (lost[0] + lost[1] + lost[2]);
   sums.speed_squared = 0;
   for (int lane = 0; lane < lane_count; ++lane)
     if (speed_squared[lane] > sums.speed_squared) sums.speed_squared = speed_squared[lane];

@@ -130,7 +130,7 @@ TEST(Law, NeoHookeanStressAndEnergyAreThoseOfTheDeformationGradient) {
   const KernelMaterial m = aluminium();
   LawState<V> s = at_rest(m);
   const double stretch = 1.2, shear = 0.3;
-  strain(s, 0, 0, stretch - 1);
+  strain(s, 0, 0, std::sqrt(2 * stretch - 1) - 1);  // F is updated by I + L + L L / 2
   update_law<strength_neo_hookean, eos_linear>(m, s);
   strain(s, 0, 1, shear);  // F = (I + shear e0 e1) diag(stretch, 1, 1)
   update_law<strength_neo_hookean, eos_linear>(m, s);

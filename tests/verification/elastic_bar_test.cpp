@@ -5,13 +5,23 @@
 
 using namespace verification;
 
-class ElasticBar : public testing::TestWithParam<std::int32_t> {};
+struct Scheme {
+  const char* name;
+  std::int32_t shape;
+  std::int32_t transfer;
+  double factor;
+  double energy_tolerance;
+};
+
+class ElasticBar : public testing::TestWithParam<Scheme> {};
 
 TEST_P(ElasticBar, OnAnEqualBarIsStressedForTwoTransitTimesAndRebounds) {
   // E 200 GPa, density 7850 kg/m3, 100 mm, 1 m/s. Poisson ratio 0 makes a free bar's uniaxial stress exact in 3D.
   const double length = 100, wave = std::sqrt(200e3 / 7.85e-3), transit = length / wave;
   Scene scene;
-  scene.grid(1, {-115, -4, -4}, {115, 4, 4}).numerics(GetParam(), 0.8).contact(OGIVE_CONTACT_HUANG_SECOND, OGIVE_DETECTION_SHARED_NODE);
+  scene.grid(1, {-115, -4, -4}, {115, 4, 4})
+      .numerics(GetParam().shape, GetParam().factor, {}, 1, GetParam().transfer)
+      .contact(OGIVE_CONTACT_HUANG_SECOND, OGIVE_DETECTION_SHARED_NODE);
   const ogive_material_id material = scene.material("steel", elastic(7.85e-3, 200e3, 0));
   const ogive_body_id left = scene.box("left", material, {-length, -2, -2}, {0, 2, 2}, 0.5, {1, 0, 0});
   const ogive_body_id right = scene.box("right", material, {0, -2, -2}, {length, 2, 2}, 0.5, {-1, 0, 0});
@@ -30,8 +40,9 @@ TEST_P(ElasticBar, OnAnEqualBarIsStressedForTwoTransitTimesAndRebounds) {
   measured("spread_of_stress", spread);
   measured("internal_over_kinetic", scene.ledger().internal / scene.ledger().initial_total);
   EXPECT_NEAR(stress, 39.62, 0.01 * 39.62);  // measured 39.87 linear, 39.51 B-spline
-  // At the transit time all kinetic energy has become elastic.
-  EXPECT_NEAR(scene.ledger().internal / scene.ledger().initial_total, 1, 0.01);  // measured 1.002 in both
+  // At the transit time all kinetic energy has become elastic, but for what affine velocities have taken.
+  EXPECT_NEAR((scene.ledger().internal + scene.ledger().transfer_dissipation) / scene.ledger().initial_total, 1, 0.01);
+  EXPECT_NEAR(scene.ledger().internal / scene.ledger().initial_total, 1, GetParam().energy_tolerance);
 
   // Contact lasts until the impulse is complete: the time by which the total impulse over the plateau's force.
   const double force = 39.62 * 16;
@@ -50,5 +61,10 @@ TEST_P(ElasticBar, OnAnEqualBarIsStressedForTwoTransitTimesAndRebounds) {
   EXPECT_LE(std::abs(scene.ledger().residual_relative), 0.06);  // measured 0.014 linear, 0.046 B-spline
 }
 
-INSTANTIATE_TEST_SUITE_P(Contact, ElasticBar, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
-                         [](const auto& info) { return info.param == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline"; });
+// Internal energy measured 1.002, 1.002, 0.989.
+INSTANTIATE_TEST_SUITE_P(
+    Contact, ElasticBar,
+    testing::Values(Scheme{"Linear", OGIVE_SHAPE_LINEAR, OGIVE_TRANSFER_FLIP, 0.8, 0.01},
+                    Scheme{"BSpline", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_FLIP, 0.8, 0.01},
+                    Scheme{"BSplineAffine", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_AFFINE_FLIP, 0.5, 0.015}),
+    [](const auto& info) { return info.param.name; });

@@ -69,8 +69,9 @@ TEST_P(RigidMotion, TranslationLeavesStressEnergyAndShapeAlone) {
 
 TEST_P(RigidMotion, ABlockThatTurnsIsNeitherHeatedNorStrainedPlasticallyAndKeepsItsEnergy) {
   const auto [shape, law] = GetParam();
+  const bool bspline = shape == OGIVE_SHAPE_QUADRATIC_BSPLINE;
   Scene scene;
-  scene.grid(1, {-8, -8, -8}, {8, 8, 8}).numerics(shape, 0.8);
+  scene.grid(1, {-8, -8, -8}, {8, 8, 8}).numerics(shape, bspline ? 0.5 : 0.8);
   const double omega = 2;  // the corner of the block runs at 7 m/s, 1/28 of the wave speed
   const Vec3 axis = {2.0 / 3.0 * omega, 1.0 / 3.0 * omega, 2.0 / 3.0 * omega};
   const ogive_material_id material = scene.material("soft", soft(law));
@@ -94,10 +95,20 @@ TEST_P(RigidMotion, ABlockThatTurnsIsNeitherHeatedNorStrainedPlasticallyAndKeeps
   measured("stress_over_centrifugal", largest_stress / centrifugal);
   measured("kinetic_change", scene.ledger().kinetic / kinetic - 1);
   measured("energy_drift", scene.ledger().residual_relative);
-  // Four cells across, a third of the spin goes into shear at the surface nodes (nodal velocities there are those of a
-  // centre of mass nearer the axis); the energy is kept: measured 6e-2 linear, 6e-3 B-spline.
-  EXPECT_LE(std::abs(scene.ledger().residual_relative), shape == OGIVE_SHAPE_LINEAR ? 0.09 : 0.012);
-  EXPECT_LE(largest_stress, 45 * centrifugal);  // measured 34
+  measured("kinetic_and_internal_change", (scene.ledger().kinetic + scene.ledger().internal) / kinetic - 1);
+  if (bspline) {
+    // With affine velocities a block four cells across comes round to its place.
+    EXPECT_LE(displaced, 0.2);  // mm, of 21.8 mm that the corner travels; measured 0.13
+    EXPECT_LE(std::abs(scene.ledger().kinetic / kinetic - 1), 0.009);                                      // measured 0.0064
+    EXPECT_LE(std::abs((scene.ledger().kinetic + scene.ledger().internal) / kinetic - 1), 0.009);          // measured 0.0067
+    EXPECT_LE(std::abs(scene.ledger().residual_relative), 0.035);  // measured 0.028, the transfer's loss being booked
+    EXPECT_LE(largest_stress, 0.45 * centrifugal);                 // measured 0.31
+  } else {
+    // With trilinear FLIP a third of the spin goes into shear at the surface nodes (nodal velocities there are those of a
+    // centre of mass nearer the axis); the energy is kept: measured 6e-2.
+    EXPECT_LE(std::abs(scene.ledger().residual_relative), 0.09);
+    EXPECT_LE(largest_stress, 45 * centrifugal);  // measured 34
+  }
   if (law == Law::JohnsonCook) {
     EXPECT_EQ(maximum(scene.field(body, "plastic_strain")), 0);
     EXPECT_EQ(scene.result(body).maximum_temperature, 293);

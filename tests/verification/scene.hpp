@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <stdexcept>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -100,9 +101,14 @@ class Scene {
     return *this;
   }
 
-  Scene& numerics(std::int32_t shape, double factor, Vec3 gravity = {}, std::int32_t threads = 1) {
+  Scene& numerics(std::int32_t shape, double factor, Vec3 gravity = {}, std::int32_t threads = 1,
+                  std::optional<std::int32_t> transfer = {}, std::int32_t update_order = OGIVE_UPDATE_STRESS_FIRST) {
     ogive_numerics_def def;
     ogive_numerics_def_init(&def, sizeof def);
+    // Trilinear functions are verified with the papers' transfer, B-splines with the engine's default.
+    if (shape == OGIVE_SHAPE_LINEAR) def.transfer = OGIVE_TRANSFER_FLIP;
+    if (transfer) def.transfer = *transfer;
+    def.update_order = update_order;
     def.shape_function = shape;
     def.time_step_factor = factor;
     def.threads = threads;
@@ -112,9 +118,10 @@ class Scene {
   }
 
   Scene& contact(std::int32_t method, std::int32_t detection = OGIVE_DETECTION_GAP, double friction = 0,
-                 std::int32_t normal = OGIVE_NORMAL_AVERAGE) {
+                 std::int32_t normal = OGIVE_NORMAL_AVERAGE, std::optional<double> gap_offset = {}) {
     ogive_contact_def def;
     ogive_contact_def_init(&def, sizeof def);
+    if (gap_offset) def.gap_offset = *gap_offset;
     def.method = method;
     def.detection = detection;
     def.friction = friction;
