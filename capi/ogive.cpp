@@ -405,50 +405,63 @@ const Field& field_named(const ogive_world* world, ogive_body_id body, const cha
   refuse("field: must be a name that ogive_field_name gives, got \"" + std::string(name) + "\"");
 }
 
-// Places of the particles in order of their numbers.
-std::vector<std::int64_t> by_number(const BodyState& body) {
-  std::vector<std::int64_t> place;
-  place.reserve(static_cast<std::size_t>(body.particles));
-  std::int32_t highest = -1;
-  for (const std::int32_t n : body.number) highest = std::max(highest, n);
-  std::vector<std::int64_t> of_number(static_cast<std::size_t>(highest) + 1, -1);
-  for (std::int64_t p = 0; p < body.padded; ++p)
-    if (body.number[p] >= 0) of_number[body.number[p]] = p;
-  for (const std::int64_t p : of_number)
-    if (p >= 0) place.push_back(p);
-  return place;
-}
-
 void check_count(const BodyState& body, const Field& field, std::int64_t count) {
   if (count != body.particles * field.components)
     refuse("count: must be particles x components = " + std::to_string(body.particles * field.components) + ", got " +
            std::to_string(count));
 }
 
-double field_value(const Model& model, int body_index, const BodyState& body, const std::string& name, std::int64_t p,
-                   int c) {
-  const Material& material = model.material_of(body_index);
-  const double mass = body.position[4 * p + 3];
-  if (name == "position") return body.position[4 * p + c];
-  if (name == "velocity") return body.velocity[4 * p + c];
-  if (name == "mass") return mass;
-  if (name == "volume") return mass / material.density * body.volume_ratio[p];
-  if (name == "stress") return body.stress[c][p];
-  const double pressure = -(body.stress[0][p] + body.stress[1][p] + body.stress[2][p]) / 3;
-  if (name == "pressure") return pressure;
-  if (name == "von_mises") {
-    double squared = 0;
-    for (int i = 0; i < 3; ++i) squared += std::pow(body.stress[i][p] + pressure, 2);
-    for (int i = 3; i < 6; ++i) squared += 2 * std::pow(body.stress[i][p], 2);
-    return std::sqrt(1.5 * squared);
+// Calls put(rank of the particle, place) for each particle; the rank counts numbers in ascending order.
+template <class Put>
+void in_order_of_number(const BodyState& body, Put&& put) {
+  std::int32_t highest = -1;
+  for (const std::int32_t n : body.number) highest = std::max(highest, n);
+  std::vector<std::int32_t> rank;
+  if (highest + 1 != body.particles) {  // some numbers are gone
+    rank.assign(static_cast<std::size_t>(highest) + 2, 0);
+    for (const std::int32_t n : body.number)
+      if (n >= 0) rank[static_cast<std::size_t>(n) + 1] = 1;
+    for (std::size_t n = 1; n < rank.size(); ++n) rank[n] += rank[n - 1];
   }
-  if (name == "energy") return mass / material.density * body.energy[p];
-  if (name == "plastic_strain") return body.plastic_strain[p];
-  if (name == "temperature") return body.temperature[p];
-  if (name == "failed") return body.plastic_strain[p] >= material.failure_strain ? 1 : 0;
-  if (name == "number") return body.number[p];
-  if (name == "deformation_gradient") return body.deformation[c][p];
-  return body.affine.empty() ? 0.0 : body.affine[affine_size * p + 4 * (c % 3) + c / 3];
+  for (std::int64_t p = 0; p < body.padded; ++p) {
+    const std::int32_t n = body.number[p];
+    if (n >= 0) put(rank.empty() ? n : rank[static_cast<std::size_t>(n)], p);
+  }
+}
+
+// The field of all particles, ordered by number.
+void copy_field(const Model& model, int body_index, const BodyState& body, const std::string& name, double* values) {
+  const Material& material = model.material_of(body_index);
+  const auto fill = [&](int components, auto&& value) {
+    in_order_of_number(body, [&](std::int64_t rank, std::int64_t p) {
+      for (int c = 0; c < components; ++c) values[components * rank + c] = value(p, c);
+    });
+  };
+  const auto mass = [&](std::int64_t p) { return body.position[4 * p + 3]; };
+  const auto pressure = [&](std::int64_t p) { return -(body.stress[0][p] + body.stress[1][p] + body.stress[2][p]) / 3; };
+  if (name == "position") fill(3, [&](std::int64_t p, int c) { return body.position[4 * p + c]; });
+  else if (name == "velocity") fill(3, [&](std::int64_t p, int c) { return body.velocity[4 * p + c]; });
+  else if (name == "mass") fill(1, [&](std::int64_t p, int) { return mass(p); });
+  else if (name == "volume")
+    fill(1, [&](std::int64_t p, int) { return mass(p) / material.density * body.volume_ratio[p]; });
+  else if (name == "stress") fill(6, [&](std::int64_t p, int c) { return body.stress[c][p]; });
+  else if (name == "pressure") fill(1, [&](std::int64_t p, int) { return pressure(p); });
+  else if (name == "von_mises")
+    fill(1, [&](std::int64_t p, int) {
+      double squared = 0;
+      for (int i = 0; i < 3; ++i) squared += (body.stress[i][p] + pressure(p)) * (body.stress[i][p] + pressure(p));
+      for (int i = 3; i < 6; ++i) squared += 2 * body.stress[i][p] * body.stress[i][p];
+      return std::sqrt(1.5 * squared);
+    });
+  else if (name == "energy") fill(1, [&](std::int64_t p, int) { return mass(p) / material.density * body.energy[p]; });
+  else if (name == "plastic_strain") fill(1, [&](std::int64_t p, int) { return body.plastic_strain[p]; });
+  else if (name == "temperature") fill(1, [&](std::int64_t p, int) { return body.temperature[p]; });
+  else if (name == "failed")
+    fill(1, [&](std::int64_t p, int) { return body.plastic_strain[p] >= material.failure_strain ? 1.0 : 0.0; });
+  else if (name == "number") fill(1, [&](std::int64_t p, int) { return static_cast<double>(body.number[p]); });
+  else if (name == "deformation_gradient") fill(9, [&](std::int64_t p, int c) { return body.deformation[c][p]; });
+  else
+    fill(9, [&](std::int64_t p, int c) { return body.affine[affine_size * p + 4 * (c % 3) + c / 3]; });
 }
 
 // ------------------------------------------------------------------------------------------------------ save and load
@@ -1021,9 +1034,7 @@ ogive_status ogive_field_get(const ogive_world* world, ogive_body_id id, const c
     const BodyState& body = body_of(world, id);
     check_count(body, field, count);
     if (count > 0) require_pointer(values, "values");
-    const std::string field_name(field.name);
-    for (const std::int64_t p : by_number(body))
-      for (int c = 0; c < field.components; ++c) *values++ = field_value(world->model, id.index, body, field_name, p, c);
+    copy_field(world->model, id.index, body, field.name, values);
   });
 }
 
@@ -1045,10 +1056,8 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
                std::to_string(values[i]));
     }
     double fastest = 0;
-    const std::vector<std::int64_t> place = by_number(body);
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      const std::int64_t p = place[i];
-      const double* v = values + i * field.components;
+    in_order_of_number(body, [&](std::int64_t rank, std::int64_t p) {
+      const double* v = values + rank * field.components;
       if (field_name == "velocity") {
         for (int c = 0; c < 3; ++c) body.velocity[4 * p + c] = v[c];
         fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -1071,7 +1080,7 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
         }
         body.yield_stress[p] = yield;
       }
-    }
+    });
     if (field_name == "velocity") {
       // The next step must be safe for the new speed as well.
       const double dt = world->state.stable_time_step;

@@ -14,13 +14,13 @@
 
 #include "aligned.hpp"
 #include "model.hpp"
+#include "transfer/kernels.hpp"
 
 namespace ogive {
 
 class Archive;
 
 constexpr int block_cells = 4;        // cells along an edge of a block
-constexpr int group_padding = 8;      // particles
 constexpr int affine_size = 12;       // doubles of a particle's affine velocity: three records of four
 constexpr int tile_nodes = 7;         // nodes along an edge of a group's tile: the block's 4, one below, two above
 

@@ -95,6 +95,7 @@ OGIVE_INLINE V plastic_increment(const KernelMaterial& m, const LawState<V>& s, 
                                  IntVecOf<V> plastic) {
   const V three_G = broadcast<V>(3.0 * m.G);
   V x = max((equivalent - s.yield_stress) / three_G, broadcast<V>(0.0));
+  IntVecOf<V> active = plastic;
   for (int iteration = 0; iteration < 60; ++iteration) {
     const V strain = max(s.plastic_strain + x, broadcast<V>(1e-300));
     const V hardening = m.B * pow(strain, broadcast<V>(m.n));
@@ -110,9 +111,11 @@ OGIVE_INLINE V plastic_increment(const KernelMaterial& m, const LawState<V>& s, 
       }
     }
     const V miss = equivalent - three_G * x - flow;
-    x = max(x + miss / (three_G + slope), 0.1 * x);
-    // Newton squares the relative miss: below 1e-6 the step just taken leaves it at round-off.
-    if (!any(plastic & (abs(miss) > 1e-6 * equivalent))) break;
+    x = select(active, max(x + miss / (three_G + slope), 0.1 * x), x);
+    // Newton squares the relative miss: below 1e-6 the step just taken leaves it at round-off. A lane that is there stays,
+    // so that its result does not depend on its neighbours.
+    active &= abs(miss) > 1e-6 * equivalent;
+    if (!any(active)) break;
   }
   return select(plastic, x, broadcast<V>(0.0));
 }

@@ -8,6 +8,8 @@
 
 namespace ogive {
 
+constexpr int group_padding = 8;  // particles; groups are padded to a multiple of it
+
 // A grid node of one velocity field. Between mapping and update: v = {momentum or velocity, mass}, f = {force, -};
 // for the particle update: v = {velocity, 0}, f = {acceleration, 0}.
 struct alignas(64) NodeRecord {

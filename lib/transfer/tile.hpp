@@ -13,6 +13,27 @@ constexpr int tile_edge = 7;
 constexpr int tile_size = tile_edge * tile_edge * tile_edge;
 using Record = Vec<4>;
 
+// Two records that are gathered together: one register where it is wide enough, two otherwise.
+#if defined(__AVX512F__)
+using RecordPair = Vec<8>;
+OGIVE_INLINE RecordPair pair_of(Record first, Record second) { return join(first, second); }
+OGIVE_INLINE Record first_of(RecordPair pair) { return lower_half(pair); }
+OGIVE_INLINE Record second_of(RecordPair pair) { return upper_half(pair); }
+#else
+struct RecordPair {
+  Record first, second;
+  RecordPair operator*(double factor) const { return {first * factor, second * factor}; }
+  RecordPair& operator+=(RecordPair other) {
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
+};
+OGIVE_INLINE RecordPair pair_of(Record first, Record second) { return {first, second}; }
+OGIVE_INLINE Record first_of(RecordPair pair) { return pair.first; }
+OGIVE_INLINE Record second_of(RecordPair pair) { return pair.second; }
+#endif
+
 OGIVE_INLINE int tile_index(int x, int y, int z) { return (z * tile_edge + y) * tile_edge + x; }
 
 // Calls visit(tile node, neighbour block 0..26, node of that block 0..63) for each node of the group's tile in use.

@@ -112,20 +112,20 @@ OGIVE_INLINE void scatter_gradient(const Weights<Shape>& weights, int lane, Reco
   }
 }
 
-// Sum of N times the node's record.
-template <class Shape>
-OGIVE_INLINE Record gather_value(const Weights<Shape>& weights, int lane, const Record* first, int stride) {
+// Sum of N times what `first` holds at the nodes: records, or pairs of them.
+template <class Shape, class R>
+OGIVE_INLINE R gather_value(const Weights<Shape>& weights, int lane, const R* first) {
   constexpr int N = Shape::nodes;
-  Record sum{};
+  R sum{};
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
-    Record sum_y{};
+    R sum_y{};
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
-      const Record* row = first + (k * tile_edge + j) * tile_edge * stride;
-      Record sum_x{};
+      const R* row = first + (k * tile_edge + j) * tile_edge;
+      R sum_x{};
 #pragma GCC unroll 3
-      for (int i = 0; i < N; ++i) sum_x += row[i * stride] * weights.w[0][i][lane];
+      for (int i = 0; i < N; ++i) sum_x += row[i] * weights.w[0][i][lane];
       sum_y += sum_x * weights.w[1][j][lane];
     }
     sum += sum_y * weights.w[2][k][lane];
@@ -134,22 +134,21 @@ OGIVE_INLINE Record gather_value(const Weights<Shape>& weights, int lane, const 
 }
 
 // Sums of N, dN/dx, dN/dy, dN/dz times the node's record; with moments in place of derivatives, the affine velocity.
-template <class Shape>
-OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const Record* first, int stride, Record& value,
-                                  Record& dx, Record& dy, Record& dz) {
+template <class Shape, class R>
+OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const R* first, R& value, R& dx, R& dy, R& dz) {
   constexpr int N = Shape::nodes;
-  value = dx = dy = dz = Record{};
+  value = dx = dy = dz = R{};
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
-    Record value_y{}, dx_y{}, dy_y{};
+    R value_y{}, dx_y{}, dy_y{};
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
-      const Record* row = first + (k * tile_edge + j) * tile_edge * stride;
-      Record value_x{}, dx_x{};
+      const R* row = first + (k * tile_edge + j) * tile_edge;
+      R value_x{}, dx_x{};
 #pragma GCC unroll 3
       for (int i = 0; i < N; ++i) {
-        value_x += row[i * stride] * weights.w[0][i][lane];
-        dx_x += row[i * stride] * weights.d[0][i][lane];
+        value_x += row[i] * weights.w[0][i][lane];
+        dx_x += row[i] * weights.d[0][i][lane];
       }
       value_y += value_x * weights.w[1][j][lane];
       dx_y += dx_x * weights.w[1][j][lane];
@@ -221,11 +220,10 @@ void map_contact(const KernelGroup& group, const KernelParticles& particles) {
 // Eqs. (33), (34). What PIC and APIC put in place of the increment, or a part of it, is the grid's own velocity.
 template <class Shape, bool affine>
 void update_particles(const KernelGroup& group, const KernelParticles& particles, MoveSums& sums) {
-  alignas(64) Record tile[2 * tile_size];  // velocity, acceleration
+  alignas(64) RecordPair tile[tile_size];  // velocity, acceleration
   for_tile_nodes(group, [&](int t, int block, int node) {
     const NodeRecord& record = group.nodes[block][node];
-    tile[2 * t] = load_aligned<Record>(record.v);
-    tile[2 * t + 1] = load_aligned<Record>(record.f);
+    tile[t] = pair_of(load_aligned<Record>(record.v), load_aligned<Record>(record.f));
   });
   const Record low = load<Record>(group.bound_low), high = load<Record>(group.bound_high);
   const double from_grid = group.grid_velocity_fraction, kept = 1.0 - from_grid;
@@ -240,13 +238,14 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
     fill<affine ? Beside::Moments : Beside::Nothing>(weights, group, x, y, z);
     Record v[lane_count];
     for (int lane = 0; lane < lane_count; ++lane) {
-      const Record* first = tile + 2 * static_cast<std::int64_t>(weights.first[lane]);
+      const RecordPair* first = tile + static_cast<std::int64_t>(weights.first[lane]);
       double* position = particles.position + 4 * (p + lane);
-      Record velocity, acceleration;
+      RecordPair both;  // velocity and acceleration
       if (affine) {
-        Record X, Y, Z, dX, dY, dZ;
-        gather_gradient<Shape>(weights, lane, first, 2, velocity, X, Y, Z);
-        gather_gradient<Shape>(weights, lane, first + 1, 2, acceleration, dX, dY, dZ);
+        RecordPair dx, dy, dz;
+        gather_gradient<Shape>(weights, lane, first, both, dx, dy, dz);
+        const Record X = first_of(dx), Y = first_of(dy), Z = first_of(dz);
+        const Record dX = second_of(dx), dY = second_of(dy), dZ = second_of(dz);
         double* C = particles.affine + 12 * (p + lane);
         const Record X_0 = load_aligned<Record>(C), Y_0 = load_aligned<Record>(C + 4), Z_0 = load_aligned<Record>(C + 8);
         lost_affine += (X_0 * X_0 + Y_0 * Y_0 + Z_0 * Z_0 - X * X - Y * Y - Z * Z +
@@ -255,9 +254,9 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
         store_aligned(C + 4, Y);
         store_aligned(C + 8, Z);
       } else {
-        velocity = gather_value<Shape>(weights, lane, first, 2);
-        acceleration = gather_value<Shape>(weights, lane, first + 1, 2);
+        both = gather_value<Shape>(weights, lane, first);
       }
+      const Record velocity = first_of(both), acceleration = second_of(both);
       const Record displacement = velocity * group.time_step;
       if (particles.displacement) {
         store_aligned(particles.displacement + 4 * (p + lane), displacement);
