@@ -12,6 +12,13 @@ struct Impact {
   std::int32_t threads = 1;
   bool half_x = false, half_y = false;
   double off_centre = 0;
+  double hardening_exponent = 0.2783;
+
+  ogive_material_def plate() const {
+    ogive_material_def def = failing_aluminium();
+    def.hardening_exponent = hardening_exponent;
+    return def;
+  }
 
   Scene build() const {
     Scene scene;
@@ -22,7 +29,7 @@ struct Impact {
         .numerics(shape, 0.4, {}, threads)
         .contact(method, OGIVE_DETECTION_GAP, 0.1);
     const ogive_material_id hard = scene.material("steel", steel());
-    const ogive_material_id soft = scene.material("aluminium", failing_aluminium());
+    const ogive_material_id soft = scene.material("aluminium", plate());
     scene.add("ball", Scene::body(hard, {0, 0, -400}),
               Scene::solid(OGIVE_SOLID_SPHERE, {off_centre, 0, 3.05}, {3, 0, 0}, 0.5));
     scene.box("plate", soft, {-8, -8, -3}, {8, 8, 0}, 0.5, {0, 0, 0});
