@@ -64,6 +64,10 @@ OGIVE_INLINE Symmetric<V> rotated(const Symmetric<V>& a, V x, V y, V z) {
           m10 * r20 + m11 * r21 + m12 * r22, m00 * r20 + m01 * r21 + m02 * r22, m00 * r10 + m01 * r11 + m02 * r12};
 }
 
+// A failed particle resists nothing while it opens: the ratio stays here at most. Beyond it what grows is the space between
+// pieces, and lone debris would go on without end.
+constexpr double widest_opening = 1000;
+
 // What a vector of particles brings in and takes away.
 template <class V>
 struct LawState {
@@ -180,6 +184,7 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
     IntVecOf<V> failed = zero > zero;
     if constexpr (strength == strength_j2_power || strength == strength_johnson_cook) {
       failed = s.plastic_strain >= m.failure_strain;
+      J1 = select(failed, min(J1, broadcast<V>(widest_opening)), J1);
       const V equivalent = sqrt(1.5 * contract(deviator, deviator));
       const IntVecOf<V> plastic = (equivalent > s.yield_stress) & ~failed;
       if (any(plastic)) {

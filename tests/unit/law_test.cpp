@@ -179,6 +179,26 @@ TEST(Law, AFailedParticleThatExpandsAndIsRecompressedStaysBounded) {
   EXPECT_NEAR(s.volume_ratio[0], 1, 1e-10);
 }
 
+TEST(Law, LoneDebrisThatOpensForEverStaysFiniteAndKeepsItsEnergy) {
+  KernelMaterial m = aluminium();
+  m.failure_strain = 1;
+  LawState<V> s = at_rest(m);
+  s.plastic_strain = broadcast<V>(1.2);
+  s.energy = broadcast<V>(300.0);
+  for (int step = 0; step < 500; ++step) {
+    strain(s, 0, 0, 0.05);
+    update_law<strength_johnson_cook, eos_mie_gruneisen>(m, s);
+    if (step > 5) {
+      EXPECT_EQ(s.stress.xx[0], 0);
+    }
+  }
+  EXPECT_EQ(s.volume_ratio[0], 1000);
+  EXPECT_GT(s.energy[0], 0);
+  const double energy = s.energy[0];
+  update_law<strength_johnson_cook, eos_mie_gruneisen>(m, s);
+  EXPECT_EQ(s.energy[0], energy);
+}
+
 TEST(Law, RigidRotationTurnsTheStressAndChangesNoInvariantAndNoEnergy) {
   const KernelMaterial m = aluminium();
   LawState<V> s = at_rest(m);

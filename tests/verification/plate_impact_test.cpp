@@ -142,8 +142,8 @@ TEST_P(PlateImpact, OfAluminiumOnARigidWallReachesTheHugoniot) {
 }
 
 TEST(PlateImpactThroughContact, OfTwoEqualAluminiumPlatesAt500MetresPerSecondReachesTheHugoniot) {
-  // Measured: pressure 1.9 % low, velocity 1.8 % high in the flyer and 2.1 % low in the target, density 0.1 %, speed 0.2 %.
-  // The goal is 1 %. Linear functions are not gated: 34 % off.
+  // Measured at most: pressure 0.22 %, density 0.01 %, velocity 0.14 %, speed 0.33 %. (Pure FLIP: 2 % in pressure and velocity;
+  // trilinear FLIP 34 %.)
   const double up = 250, length = 60;
   Scene scene;
   scene.grid(cell, {-length - 20, 0, 0}, {length + 20, width, width}, side_faces)
@@ -165,9 +165,9 @@ TEST(PlateImpactThroughContact, OfTwoEqualAluminiumPlatesAt500MetresPerSecondRea
                                                     : means(scene, body, interface - outer, interface - inner);
     EXPECT_GT(behind.count, 1000);
     const std::string side = body.index == target.index ? "target_" : "flyer_";
-    expect_relative((side + "pressure").c_str(), behind.pressure, aluminium.pressure(up), 0.025);
-    expect_relative((side + "density").c_str(), behind.density, aluminium.compressed(up), 0.01);
-    expect_relative((side + "particle_velocity").c_str(), behind.velocity, up, 0.025);
+    expect_relative((side + "pressure").c_str(), behind.pressure, aluminium.pressure(up), 0.005);
+    expect_relative((side + "density").c_str(), behind.density, aluminium.compressed(up), 0.001);
+    expect_relative((side + "particle_velocity").c_str(), behind.velocity, up, 0.005);
   }
   expect_relative("shock_speed", (second - first) / (t2 - t1), aluminium.shock(up), 0.01);
 }
@@ -228,13 +228,13 @@ struct Piston {
 TEST_P(PlateImpact, OfAnElasticPistonAt20MetresPerSecondMakesTheElasticWave) {
   const UniaxialStrain exact;
   const double time = 40 / 5865.3;
-  // Measured, linear / B-spline: stress +0.3 / +0.5 %, velocity -0.1 / +0.5 %, front -0.7 / -1.5 %.
+  // Measured, linear / B-spline: stress +0.3 / -0.1 %, velocity -0.1 / -0.1 %, front -0.7 / -1.0 %.
   Piston piston(20, 60, time, GetParam());
   const Means behind = means(piston.scene, piston.column, 5 * cell, 40 - 8 * cell);
   measured("stress", behind.axial);
-  expect_relative("stress_exact", behind.axial, exact.stress(20), 0.008);
+  expect_relative("stress_exact", behind.axial, exact.stress(20), 0.005);
   expect_relative("stress_linear", behind.axial, 316.7, 0.01);
-  expect_relative("particle_velocity", behind.velocity + 20, 20, 0.008);
+  expect_relative("particle_velocity", behind.velocity + 20, 20, 0.005);
   expect_relative("front", front(piston.scene, piston.column, 0.5 * 316.7), time * (5865.3 - 20), 0.02);
   // The front overshoots.
   measured("plastic_strain", piston.scene.result(piston.column).maximum_plastic_strain);
@@ -245,17 +245,19 @@ TEST_P(PlateImpact, OfAPlasticPistonAt100MetresPerSecondMakesAPrecursorAndAPlast
   const UniaxialStrain exact;
   EXPECT_NEAR(exact.elastic_limit(), 458.5, 0.1);
   const double time = 80 / 5865.3, plastic_front = time * (4614.8 - 100);
-  // Measured: stress -2.0 / -0.4 %, precursor +2.0 / +3.3 %, its velocity +1.8 / +4.4 %, velocity -0.4 / -0.2 %.
+  // Measured: stress -2.0 / -0.15 %, precursor +1.9 / +1.8 %, its velocity +1.7 / +2.5 %, velocity -0.4 / -0.1 %. With
+  // trilinear functions the stress behind the plastic wave wanders with time (+4.9 % at twice this length).
+  const double tolerance = GetParam() == OGIVE_SHAPE_LINEAR ? 0.025 : 0.005;
   Piston piston(100, 100, time, GetParam());
   const Means behind = means(piston.scene, piston.column, 5 * cell, plastic_front - 8 * cell);
   const Means precursor = means(piston.scene, piston.column, plastic_front + 8 * cell, 80 * (1 - 100 / 5865.3) - 8 * cell);
   EXPECT_GT(precursor.count, 100);
   measured("stress", behind.axial);
   measured("precursor", precursor.axial);
-  expect_relative("stress_exact", behind.axial, exact.stress(100), 0.025);
-  expect_relative("stress_linear", behind.axial, 1343.7, 0.03);
-  expect_relative("precursor_exact", precursor.axial, exact.elastic_limit(), 0.04);
-  expect_relative("precursor_velocity", precursor.velocity + 100, exact.limit_velocity(), 0.055);
+  expect_relative("stress_exact", behind.axial, exact.stress(100), tolerance);
+  expect_relative("stress_linear", behind.axial, 1343.7, tolerance + 0.005);
+  expect_relative("precursor_exact", precursor.axial, exact.elastic_limit(), 0.025);
+  expect_relative("precursor_velocity", precursor.velocity + 100, exact.limit_velocity(), 0.035);
   expect_relative("particle_velocity", behind.velocity + 100, 100, 0.005);
 }
 
