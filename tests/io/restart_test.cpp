@@ -27,11 +27,15 @@ struct Settings {
   std::int32_t shape;
   std::int32_t threads;
   std::int32_t method;
+  std::int32_t transfer = OGIVE_TRANSFER_AFFINE_FLIP;
+  std::int32_t order = OGIVE_UPDATE_STRESS_FIRST;
 };
 
 std::string text_of(const Settings& settings) {
   const char* methods[] = {"SingleField", "HuangFirst", "HuangSecond"};
   return std::string(settings.shape == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline") + methods[settings.method] +
+         (settings.transfer == OGIVE_TRANSFER_FLIP ? "Flip" : "") +
+         (settings.order == OGIVE_UPDATE_STRESS_LAST ? "StressLast" : "") +
          std::to_string(settings.threads) + "Threads";
 }
 void PrintTo(const Settings& settings, std::ostream* out) { *out << text_of(settings); }
@@ -54,6 +58,8 @@ void build(World& world, const Settings& settings) {
   numerics.shape_function = settings.shape;
   numerics.time_step_factor = 0.4;
   numerics.threads = settings.threads;
+  numerics.transfer = settings.transfer;
+  numerics.update_order = settings.order;
   REQUIRE_OK(ogive_world_set_numerics(world.get(), &numerics));
 
   ogive_contact_def contact;
@@ -232,7 +238,12 @@ INSTANTIATE_TEST_SUITE_P(Cases, Restart,
                                          Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_FIRST},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 1, OGIVE_CONTACT_HUANG_SECOND},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_HUANG_SECOND},
-                                         Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_SINGLE_FIELD}),
+                                         Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_SINGLE_FIELD},
+                                         Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_SECOND, OGIVE_TRANSFER_FLIP},
+                                         Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_SECOND,
+                                                  OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_UPDATE_STRESS_LAST},
+                                         Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 1, OGIVE_CONTACT_HUANG_FIRST,
+                                                  OGIVE_TRANSFER_FLIP, OGIVE_UPDATE_STRESS_LAST}),
                          [](const auto& info) { return text_of(info.param); });
 
 TEST(Checkpoint, OfTheSameStateIsEqualByteForByteAfterARestart) {
