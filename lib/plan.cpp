@@ -4,6 +4,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "time_step.hpp"
+
 namespace ogive {
 namespace {
 
@@ -81,6 +83,9 @@ std::string describe_plan(const Model& model, const State& state, const Workspac
   const Vector3& g = model.numerics.gravity;
   line(text, "gravity: %s", g[0] == 0 && g[1] == 0 && g[2] == 0 ? "left out (it is 0)" : "on all bodies");
   line(text, "time step: %.6g at first (factor %.3g)", state.stable_time_step, model.numerics.time_step_factor);
+  if (numerics.affine() && numerics.time_step_factor > lone_affine_particle_limit)
+    line(text, "  caution: with affine velocities a lone particle is stable for factors below %.2f (no shear stiffness) to 0.73",
+         lone_affine_particle_limit);
   const std::int64_t bytes = state.memory_bytes() + workspace.memory_bytes();
   line(text, "memory: %.1f MB, %.0f bytes a particle with the grid", 1e-6 * static_cast<double>(bytes),
        static_cast<double>(bytes) / static_cast<double>(state.particle_count() > 0 ? state.particle_count() : 1));

@@ -9,6 +9,9 @@
 
 namespace ogive {
 
+// 1 / sqrt(3), the factor of (35) up to which a lone fluid particle with affine velocity is stable (docs/theory.md, 8.1).
+constexpr double lone_affine_particle_limit = 0.577;
+
 // After a step, from what the kernels reported. Throws Error(Numerical) if the step has collapsed.
 double stable_time_step(const Model& model, const State& state, const Workspace& workspace);
 // Before the first step, from the material at rest and the initial velocities.
