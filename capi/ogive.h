@@ -441,7 +441,8 @@ OGIVE_API const char* ogive_field_name(const ogive_world* world, ogive_body_id b
  * which must be particles * components. */
 OGIVE_API ogive_status ogive_field_get(const ogive_world* world, ogive_body_id body, const char* name, double* values,
                                        int64_t count);
-/* Sets velocity, affine_velocity, stress, energy, plastic_strain or temperature in the same layout. */
+/* Sets velocity, affine_velocity, stress, energy, plastic_strain or temperature in the same layout. Setting one leaves the
+ * others as they are: who sets velocity may want to set affine_velocity too. */
 OGIVE_API ogive_status ogive_field_set(ogive_world* world, ogive_body_id body, const char* name, const double* values,
                                        int64_t count);
 

@@ -97,7 +97,8 @@ void book_departure(const Material& material, double cell_size, BodyState& body,
   totals.left_mass += mass;
   for (int axis = 0; axis < 3; ++axis) totals.left_momentum[axis] += mass * v[axis];
   totals.left_energy +=
-      0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + affine_energy(body, p, cell_size) + mass / material.density * body.energy[p];
+      0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + affine_energy(body, p, cell_size) +
+      mass / material.density * body.energy[p];
 }
 
 // New order of a body's particles: `source[i]` is the old place of the particle now at i; padding repeats the last one.

@@ -18,7 +18,8 @@ std::int64_t State::memory_bytes() const {
   std::int64_t total = 0;
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
   for (const BodyState& body : bodies) {
-    total += bytes(body.position) + bytes(body.velocity) + bytes(body.affine) + bytes(body.viscous_pressure) + bytes(body.volume_ratio) + bytes(body.energy) +
+    total += bytes(body.position) + bytes(body.velocity) + bytes(body.affine) + bytes(body.volume_ratio) +
+             bytes(body.energy) + bytes(body.viscous_pressure) +
              bytes(body.plastic_strain) + bytes(body.yield_stress) + bytes(body.temperature) + bytes(body.number) +
              bytes(body.groups);
     for (const auto& c : body.stress) total += bytes(c);

@@ -13,7 +13,7 @@ import csv
 import os
 
 from plot_common import Refused, run_main
-from validation_table import Case, digest, markdown_table, replace_block, run_cases
+from validation_table import Case, digest, engine_of, markdown_table, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 SCENE = os.path.join(TOP, "examples", "scenes", "thick_plate", "scene.toml")
@@ -39,10 +39,7 @@ def main():
         if cell not in CELLS:
             raise Refused(f"--cells {cell:g}: expected some of " + ", ".join(f"{known:g}" for known in CELLS))
 
-    engine = os.path.realpath(os.path.join(os.path.dirname(arguments.program), "..", "lib", "libogive.so"))
-    for path in (arguments.program, engine):
-        if not os.path.exists(path):
-            raise Refused(f"{path}: not there; build with: cmake --preset release && cmake --build --preset release")
+    engine = engine_of(arguments.program)
     identity = {"scene": digest(SCENE, os.path.join(os.path.dirname(SCENE), "rod.stl")), "engine": digest(engine)}
     output = os.path.join(TOP, "out", "validation", "convergence")
     cases = {cell: Case(os.path.join(output, f"{cell:g}"), [word for option in options(cell) for word in ("--set", option)],

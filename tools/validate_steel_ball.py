@@ -22,7 +22,7 @@ import tomllib
 
 from measure_steel_ball import EXPERIMENT, measure_run, read_table_ii
 from plot_common import Refused, run_main
-from validation_table import Case, digest, markdown_table, replace_block, run_cases
+from validation_table import Case, digest, engine_of, markdown_table, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 SCENE = os.path.join("examples", "scenes", "steel_ball", "scene.toml")
@@ -181,10 +181,7 @@ def main():
     with open(scene_file, "rb") as file:
         scene = tomllib.load(file)
     until = arguments.until or scene["stop"]["time"]
-    engine = os.path.realpath(os.path.join(os.path.dirname(arguments.program), "..", "lib", "libogive.so"))
-    for path in (arguments.program, engine):
-        if not os.path.exists(path):
-            raise Refused(f"{path}: not there; build with: cmake --preset release && cmake --build --preset release")
+    engine = engine_of(arguments.program)
     identity = {"scene": digest(scene_file), "engine": digest(engine)}
 
     cases = {}

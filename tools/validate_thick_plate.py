@@ -23,7 +23,7 @@ import sys
 import tomllib
 
 from plot_common import Refused, run_main
-from validation_table import Case, digest, markdown_table, read_references, replace_block, run_cases
+from validation_table import Case, digest, engine_of, markdown_table, read_references, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 SCENE = os.path.join("examples", "scenes", "thick_plate", "scene.toml")
@@ -218,10 +218,7 @@ def main():
     with open(scene_file, "rb") as file:
         scene = tomllib.load(file)
     read_at = arguments.until or arguments.read_standard_at
-    engine = os.path.realpath(os.path.join(os.path.dirname(arguments.program), "..", "lib", "libogive.so"))
-    for path in (arguments.program, engine):
-        if not os.path.exists(path):
-            raise Refused(f"{path}: not there; build with: cmake --preset release && cmake --build --preset release")
+    engine = engine_of(arguments.program)
     identity = {"scene": digest(scene_file, os.path.join(os.path.dirname(scene_file), "rod.stl")),
                 "engine": digest(engine)}
 

@@ -28,6 +28,15 @@ def digest(*paths):
     return total.hexdigest()[:16]
 
 
+def engine_of(program):
+    """The library that a built program runs with; both must be there."""
+    engine = os.path.realpath(os.path.join(os.path.dirname(program), "..", "lib", "libogive.so"))
+    for path in (program, engine):
+        if not os.path.exists(path):
+            raise Refused(f"{path}: not there; build with: cmake --preset release && cmake --build --preset release")
+    return engine
+
+
 class Case:
     """One run of the program: where it is, how it is called, and what came of it."""
 

@@ -65,7 +65,8 @@ OGIVE_INLINE Symmetric<V> rotated(const Symmetric<V>& a, V x, V y, V z) {
 }
 
 // A failed particle resists nothing while it opens: the ratio stays here at most. Beyond it what grows is the space between
-// pieces, and lone debris would go on without end.
+// pieces, and debris in free flight would pass any bound in time (as (1 + c t)^3; a lone affine particle, whose rate of
+// expansion c does not fall, exponentially).
 constexpr double widest_opening = 1000;
 
 // What a vector of particles brings in and takes away.
