@@ -72,18 +72,41 @@ void collect(const Document& document, const toml::node& node, const std::string
   }
 }
 
-}  // namespace
-
-Document Document::from_file(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+std::string text_of(const std::filesystem::path& file, const char* expected) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code ignored;
   if (!stream || std::filesystem::is_directory(file, ignored)) {
-    throw Failure(kExitInput, file.string() + ": cannot be read; expected a scene file (TOML)");
+    throw Failure(kExitInput, file.string() + ": cannot be read; expected " + expected);
   }
   std::ostringstream text;
   text << stream.rdbuf();
-  Document document = from_text(text.str(), file.string());
+  return text.str();
+}
+
+/// Tables are merged, everything else of `from` replaces what `to` has. Moved, not copied: a copy forgets where it was
+/// written.
+void merge(toml::table& to, toml::table&& from) {
+  for (auto&& [key, value] : from) {
+    toml::table* const inner = to.get(key) ? to.get(key)->as_table() : nullptr;
+    if (inner && value.is_table()) {
+      merge(*inner, std::move(*value.as_table()));
+    } else {
+      to.erase(key);
+      value.visit([&](auto& concrete) { to.insert(key, std::move(concrete)); });
+    }
+  }
+}
+
+}  // namespace
+
+Document Document::from_file(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  Document document = from_text(text_of(file, "a scene file (TOML)"), file.string());
   for (const std::string& setting : settings) {
+    if (!setting.empty() && setting.front() == '@') {
+      const std::string name = setting.substr(1);
+      merge(document.root_, parsed(text_of(name, "a file of settings (TOML) after \"--set @\""), name));
+      continue;
+    }
     const size_t equals = setting.find('=');
     if (equals == std::string::npos) {
       throw Failure(kExitInput, "--set " + setting + ": expected path.to.key=value, got no \"=\"");
@@ -142,9 +165,9 @@ void Document::set(const std::string& path, const std::string& value_text, const
 
 std::string Document::place(const toml::source_region& region) const {
   if (!region.path) return "";
-  if (*region.path != name_) return *region.path;
+  if (region.path->rfind("--set ", 0) == 0) return *region.path;
   if (region.begin.line == 0) return "";
-  return name_ + ':' + std::to_string(region.begin.line) + ':' + std::to_string(region.begin.column);
+  return *region.path + ':' + std::to_string(region.begin.line) + ':' + std::to_string(region.begin.column);
 }
 
 std::map<std::string, std::string> Document::places() const {

@@ -12,7 +12,7 @@ namespace driver {
 
 class Document {
  public:
-  /// Reads `file` and merges "path.to.key=value" settings into it, in order.
+  /// Reads `file` and merges settings into it, in order: "path.to.key=value", or "@file" for all values of a TOML file.
   static Document from_file(const std::filesystem::path& file, const std::vector<std::string>& settings);
   /// Reads TOML text; `name` stands for it in messages.
   static Document from_text(const std::string& text, const std::string& name);

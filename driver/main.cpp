@@ -85,7 +85,7 @@ Command run_command() {
       ("threads", po::value<int64_t>(),
        "threads, 0 for all processors (default: the scene's numerics.threads, or 1)")  //
       ("set", po::value<std::vector<std::string>>(),
-       "path.to.key=value: overrides a value of the scene; may be repeated")                                   //
+       "path.to.key=value: overrides a value of the scene; @FILE: all values of a TOML file; may be repeated")                                   //
       ("until", po::value<double>(), "end time in the scene's unit of time (default: the scene's stop.time)")  //
       ("help", "this text");
   command.call = [](const std::string& operand, const po::variables_map& values) {
@@ -138,7 +138,7 @@ Command check_command() {
   command.operand = "scene";
   command.options.add_options()  //
       ("set", po::value<std::vector<std::string>>(),
-       "path.to.key=value: overrides a value of the scene; may be repeated")  //
+       "path.to.key=value: overrides a value of the scene; @FILE: all values of a TOML file; may be repeated")  //
       ("help", "this text");
   command.call = [](const std::string& operand, const po::variables_map& values) {
     return check(operand, settings_of(values));

@@ -13,8 +13,6 @@ case ${1:-} in -h | --help) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;; esac
 build=${OGIVE_BUILD_DIR:-build}/release
 out=out/demo
 scene=examples/scenes/thick_plate/scene.toml
-paper=(--set numerics.shape_function=linear --set numerics.time_step_factor=0.4 --set contact.detection=shared_node
-  --set numerics.transfer=affine_flip --set numerics.update_order=stress_last)
 
 tools/install_packages.sh
 cmake --preset release -B "$build" >/dev/null
@@ -27,7 +25,7 @@ run() {  # NAME OPTIONS...
   "$build/bin/ogive" run "$scene" --output "$out/$name" --overwrite --threads 0 "$@"
 }
 run recommended "$@"
-run paper-settings "${paper[@]}" "$@"
+run paper-settings --set @examples/settings/huang2010.toml "$@"
 
 echo
 /usr/bin/python3 tools/demo_report.py "$out" tests/data/huang2010_thick_plate.csv

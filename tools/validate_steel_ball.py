@@ -8,7 +8,7 @@
 
 Runs examples/scenes/steel_ball with --set alone, one thread each. A run that has ended with the same settings, scene and
 engine is not made again, so an interrupted sweep goes on where it was. Settings:
-  paper        trilinear, factor 0.4, contact at any shared node, with affine velocities and the stress last
+  paper        examples/settings/huang2010.toml
   recommended  the scene as it is
 Shapes are measured as tools/measure_steel_ball.py does. Writes the part "steel-ball" of docs/validation.md and
 docs/data/steel_ball.csv.
@@ -22,16 +22,13 @@ import tomllib
 
 from measure_steel_ball import EXPERIMENT, measure_run, read_table_ii
 from plot_common import Refused, run_main
-from validation_table import Case, digest, engine_of, markdown_table, replace_block, run_cases
+from validation_table import Case, digest, engine_of, markdown_table, numerics_text, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 SCENE = os.path.join("examples", "scenes", "steel_ball", "scene.toml")
 METHODS = {"single_field": "standard", "huang_first": "first", "huang_second": "second"}
-SETTINGS = {
-    "paper": ["numerics.shape_function=linear", "numerics.time_step_factor=0.4", "contact.detection=shared_node",
-              "numerics.transfer=affine_flip", "numerics.update_order=stress_last"],
-    "recommended": [],
-}
+PAPER_FILE = os.path.join(TOP, "examples", "settings", "huang2010.toml")
+SETTINGS = {"paper": ["@" + PAPER_FILE], "recommended": []}
 
 
 class Row:
@@ -95,14 +92,11 @@ def checks(rows):
     return result
 
 
-def validation_text(rows, scene):
+def validation_text(rows):
     good = [row for row in rows if not row.failure]
-    contact, numerics = scene["contact"], scene["numerics"]
-    titles = {"paper": "Settings of the paper (trilinear shape functions, time-step factor 0.4, contact at any shared node, "
-                       "the ball's normals)",
-              "recommended": f"Recommended settings (`{numerics['shape_function']}`, time-step factor "
-                             f"{numerics['time_step_factor']:g}, contact detection `{contact['detection']}`, the ball's "
-                             "normals)"}
+    scene_file = os.path.join(TOP, SCENE)
+    titles = {name: f"{title} ({numerics_text(scene_file, [*SETTINGS[name], 'contact.method=huang_second'])})"
+              for name, title in (("paper", "Settings of the paper"), ("recommended", "Recommended settings"))}
     parts = ["Made by `tools/validate_steel_ball.py` with Ogive " + ", ".join(sorted({row.version for row in good}))
              + " (one thread; the wall time is of a machine that did other work too), read at "
              + ", ".join(f"{time:.0f}" for time in sorted({round(row.time) for row in good}))
@@ -182,7 +176,7 @@ def main():
         scene = tomllib.load(file)
     until = arguments.until or scene["stop"]["time"]
     engine = engine_of(arguments.program)
-    identity = {"scene": digest(scene_file), "engine": digest(engine)}
+    identity = {"scene": digest(scene_file, PAPER_FILE), "engine": digest(engine)}
 
     cases = {}
     for settings in SETTINGS:
@@ -205,7 +199,7 @@ def main():
             rows.append(Row(model, method, settings, case.directory, outcome))
     if not any(not row.failure for row in rows):
         raise Refused(f"{output}: no runs of this engine and scene")
-    text = validation_text(rows, scene)
+    text = validation_text(rows)
     print(f"\n{text}")
     if not trial:
         write_csv(os.path.join(TOP, "docs", "data", "steel_ball.csv"), rows)

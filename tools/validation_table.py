@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import time
+import tomllib
 
 from plot_common import Refused
 
@@ -17,6 +18,44 @@ def read_references(path):
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     key = next(iter(rows[0]))
     return {float(row[key]): {name: float(value) for name, value in row.items()} for row in rows}
+
+
+def numerics_text(scene_file, settings):
+    """The numerics of a scene with what --set gives it, in words."""
+    with open(scene_file, "rb") as file:
+        scene = tomllib.load(file)
+
+    def merge(into, table):
+        for key, value in table.items():
+            if isinstance(value, dict) and isinstance(into.get(key), dict):
+                merge(into[key], value)
+            else:
+                into[key] = value
+
+    for setting in settings:
+        if setting.startswith("@"):
+            with open(setting[1:], "rb") as file:
+                merge(scene, tomllib.load(file))
+        else:
+            path, value = setting.split("=", 1)
+            *tables, key = path.split(".")
+            try:
+                value = tomllib.loads(f"value = {value}")["value"]
+            except tomllib.TOMLDecodeError:
+                pass  # a bare word
+            for table in reversed(tables):
+                key, value = table, {key: value}
+            merge(scene, {key: value})
+    numerics, contact = scene["numerics"], scene["contact"]
+    words = [f"`{numerics['shape_function']}`", f"`{numerics['transfer']}`"]
+    if numerics.get("pic_fraction"):
+        words.append(f"{100 * numerics['pic_fraction']:g} % of the grid's velocity a step")
+    words += [f"`{numerics['update_order']}`", f"time-step factor {numerics['time_step_factor']:g}"]
+    if contact["method"] != "single_field":
+        offset = f" (offset {contact['gap_offset']:g} cells)" if contact["detection"] == "gap" else ""
+        words.append(f"contact detection `{contact['detection']}`{offset}")
+        words.append(f"the {contact['master']}'s normals" if contact["normal"] == "master" else f"{contact['normal']} normals")
+    return ", ".join(words)
 
 
 def digest(*paths):

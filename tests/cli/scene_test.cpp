@@ -94,6 +94,20 @@ TEST(Scene, thick_plate_example) {
   EXPECT_EQ(scene.output.results[0].body, "rod");
 }
 
+TEST(Scene, a_file_of_settings_is_merged_in_its_turn) {
+  const std::string file = std::string(OGIVE_SCENES) + "/thick_plate/scene.toml";
+  const std::string settings = std::string(OGIVE_SCENES) + "/../settings/huang2010.toml";
+  const Document document =
+      Document::from_file(file, {"contact.gap_offset=0.5", "@" + settings, "numerics.pic_fraction=0.01"});
+  const Scene scene = driver::read_scene(document, file);
+  EXPECT_EQ(scene.numerics.shape_function, OGIVE_SHAPE_LINEAR);
+  EXPECT_EQ(scene.contact.gap_offset, 0.8);         // the file after what stood before it
+  EXPECT_EQ(scene.numerics.pic_fraction, 0.01);     // what stands after it wins
+  EXPECT_EQ(scene.contact.normal, OGIVE_NORMAL_MASTER);  // the scene's own, beside merged keys of the same table
+  EXPECT_EQ(driver::place_of(document.places(), "contact.gap_offset"), settings + ":16:14");
+  EXPECT_THROW(Document::from_file(file, {"@" + settings + ".absent"}), driver::Failure);
+}
+
 TEST(Scene, merged_text_reads_back_as_the_same_scene) {
   const Scene first =
       scene_of({{"stop.time", "0.1"}, {"title", "say \"hello\" \\ there"}, {"bodies.ball.velocity.2", "V0/3"}});
