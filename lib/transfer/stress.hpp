@@ -9,7 +9,7 @@
 namespace ogive {
 namespace OGIVE_ISA_NAMESPACE {
 
-// Adds -V (sigma - q I) grad N, Eq. (31), for four particles; `stress` is -V (sigma - q I).
+// Adds -V (sigma - q I) grad N, Eq. (31), for four particles; `stress` is -V (sigma - q I) / h.
 template <class Shape>
 OGIVE_INLINE void scatter_stress(const Weights& weights, const Symmetric<Lanes>& stress, Scatter<Shape>& force) {
   Lanes X[4] = {stress.xx, stress.xy, stress.xz, Lanes{}};
@@ -20,10 +20,10 @@ OGIVE_INLINE void scatter_stress(const Weights& weights, const Symmetric<Lanes>&
   transpose(Z[0], Z[1], Z[2], Z[3]);
 #pragma GCC unroll 1
   for (int lane = 0; lane < lane_count; ++lane)
-    scatter_slopes<Shape, true>(weights, lane, Record{}, X[lane], Y[lane], Z[lane], force);
+    scatter_slopes<Shape, Beside::Derivatives, true>(weights, lane, Record{}, X[lane], Y[lane], Z[lane], force);
 }
 
-// -V (sigma - q I).
+// -V (sigma - q I) / h, `volume` being V / h.
 template <class V>
 OGIVE_INLINE Symmetric<V> stress_times_volume(const Symmetric<V>& stress, V volume, V q) {
   volume = -volume;
@@ -75,7 +75,8 @@ void map_internal_force(const KernelGroup& group, const KernelParticles& particl
     Lanes x, y, z, mass;
     load_records(particles.position + 4 * p, x, y, z, mass);
     fill<Shape, Beside::Derivatives>(weights, group, x, y, z);
-    const Lanes volume = mass * group.inverse_density * load_aligned<Lanes>(particles.volume_ratio + p);
+    const Lanes volume =
+        mass * (group.inverse_density * group.inverse_cell) * load_aligned<Lanes>(particles.volume_ratio + p);
     const Lanes q = particles.viscous_pressure ? load_aligned<Lanes>(particles.viscous_pressure + p) : Lanes{};
     scatter_stress<Shape>(weights, stress_times_volume(load_stress<Lanes>(particles, p), volume, q), sums);
   }
@@ -111,8 +112,8 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
       // Rows of records to lanes: after the transposes gradient[j][i] holds dv_i/dx_j of four particles.
       Record gradient[3][lane_count], motion[lane_count];
       for (int lane = 0; lane < lane_count; ++lane)
-        gather_slopes<Shape>(weights[i / lane_count], lane, velocity, motion[lane], gradient[0][lane],
-                             gradient[1][lane], gradient[2][lane]);
+        gather_slopes<Shape, Beside::Derivatives>(weights[i / lane_count], lane, velocity, motion[lane],
+                                                  gradient[0][lane], gradient[1][lane], gradient[2][lane]);
       transpose(motion[0], motion[1], motion[2], motion[3]);
       store_aligned(speeds_squared + i, motion[0] * motion[0] + motion[1] * motion[1] + motion[2] * motion[2]);
       for (int b = 0; b < 3; ++b) {
@@ -128,8 +129,9 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
       LawState<LawLanes> s;
       s.temperature = LawLanes{};
       s.dt = broadcast<LawLanes>(group.time_step);
+      const double steps_per_cell = group.time_step * group.inverse_cell;
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) s.L[i][j] = load_aligned<LawLanes>(gradients[i][j] + part) * group.time_step;
+        for (int j = 0; j < 3; ++j) s.L[i][j] = load_aligned<LawLanes>(gradients[i][j] + part) * steps_per_cell;
 
       if constexpr (!hyperelastic) s.stress = load_stress<LawLanes>(particles, p);
       s.volume_ratio = load_aligned<LawLanes>(particles.volume_ratio + p);
@@ -196,7 +198,7 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
         }
       } else {
         const Symmetric<LawLanes> product =
-            stress_times_volume(s.stress, initial_volume * s.volume_ratio, s.viscous_pressure);
+            stress_times_volume(s.stress, initial_volume * s.volume_ratio * group.inverse_cell, s.viscous_pressure);
         store_aligned(products[0] + part, product.xx);
         store_aligned(products[1] + part, product.yy);
         store_aligned(products[2] + part, product.zz);

@@ -38,15 +38,15 @@ OGIVE_INLINE void prefetch_records(const double* array, std::int64_t p) {
     prefetch(array + size * (p + prefetch_distance) + 8 * line);
 }
 
-// What goes with the weights: derivatives per length (d/dx, not d/dxi), moments 4 N (x_I - x_p) / h^2, or
-// moments N (x_I - x_p).
+// What goes with the weights: derivatives per cell (d/dxi, not d/dx), moments 4 N (x_I - x_p) / h^2, or moments
+// N (x_I - x_p).
 enum class Beside { Nothing, Derivatives, MomentsFromGrid, MomentsToGrid };
 
 // Particles whose weights are computed ahead of their use.
 constexpr int stretch = 32;
 
-// Weights and slopes of the outer nodes of four particles, by axis, node and particle. The slopes of a linear function
-// are -e[1] and e[1].
+// Weights and slopes of the outer nodes of four particles, by axis, node and particle. The moments of a linear function
+// are -e[1] and e[1]; its derivatives, -1 and 1, are not kept.
 struct Weights {
   alignas(32) double w[3][2][lane_count];
   alignas(32) double e[3][2][lane_count];
@@ -68,7 +68,7 @@ OGIVE_INLINE void fill(Weights& weights, const KernelGroup& group, Lanes x, Lane
       if (N == 2 && side == 0) continue;
       // In cells; of a linear function both moments are -+ w_0 w_1.
       const Lanes moment = N == 2 ? w[0] * w[1] : (base[axis] + static_cast<double>(n) - xi) * w[n];
-      if (beside == Beside::Derivatives) store_aligned(weights.e[axis][side], d[n] * group.inverse_cell);
+      if (beside == Beside::Derivatives && N == 3) store_aligned(weights.e[axis][side], d[n]);
       if (beside == Beside::MomentsFromGrid) store_aligned(weights.e[axis][side], moment * (4.0 * group.inverse_cell));
       if (beside == Beside::MomentsToGrid) store_aligned(weights.e[axis][side], moment * (1.0 / group.inverse_cell));
     }
@@ -96,27 +96,37 @@ OGIVE_INLINE int fill_stretch(Weights (&weights)[stretch / lane_count], const Ke
 }
 
 // The weights and slopes of one particle along one axis.
-template <class Shape>
+template <class Shape, Beside beside = Beside::Nothing>
 struct AxisWeights {
+  static constexpr bool unit_slopes = Shape::nodes == 2 && beside == Beside::Derivatives;
   double w_0, w_2, e_0, e_2;
   OGIVE_INLINE AxisWeights of(const Weights& weights, int axis, int lane) {
     return {weights.w[axis][0][lane], weights.w[axis][1][lane], weights.e[axis][0][lane], weights.e[axis][1][lane]};
   }
 };
 
+// A times the slope at the upper node of a linear function.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE R scaled_by_slope(const AxisWeights<Shape, beside>& a, R A) {
+  if constexpr (AxisWeights<Shape, beside>::unit_slopes)
+    return A;
+  else
+    return A * a.e_2;
+}
+
 // q w at the nodes along an axis.
-template <class Shape, class R>
-OGIVE_INLINE void spread(const AxisWeights<Shape>& a, R q, R (&out)[Shape::nodes]) {
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE void spread(const AxisWeights<Shape, beside>& a, R q, R (&out)[Shape::nodes]) {
   out[0] = q * a.w_0;
   out[Shape::nodes - 1] = q * a.w_2;
   if constexpr (Shape::nodes == 3) out[1] = q - (out[0] + out[2]);
 }
 
 // q w + A e.
-template <class Shape, class R>
-OGIVE_INLINE void spread(const AxisWeights<Shape>& a, R q, R A, R (&out)[Shape::nodes]) {
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE void spread(const AxisWeights<Shape, beside>& a, R q, R A, R (&out)[Shape::nodes]) {
   if constexpr (Shape::nodes == 2) {
-    const R moved = A * a.e_2;
+    const R moved = scaled_by_slope(a, A);
     out[0] = q * a.w_0 - moved;
     out[1] = q * a.w_2 + moved;
   } else {
@@ -127,10 +137,10 @@ OGIVE_INLINE void spread(const AxisWeights<Shape>& a, R q, R A, R (&out)[Shape::
 }
 
 // A e.
-template <class Shape, class R>
-OGIVE_INLINE void spread_slope(const AxisWeights<Shape>& a, R A, R (&out)[Shape::nodes]) {
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE void spread_slope(const AxisWeights<Shape, beside>& a, R A, R (&out)[Shape::nodes]) {
   if constexpr (Shape::nodes == 2) {
-    out[1] = A * a.e_2;
+    out[1] = scaled_by_slope(a, A);
     out[0] = -out[1];
   } else {
     out[0] = A * a.e_0;
@@ -140,8 +150,8 @@ OGIVE_INLINE void spread_slope(const AxisWeights<Shape>& a, R A, R (&out)[Shape:
 }
 
 // Sum of w v along an axis.
-template <class Shape, class R>
-OGIVE_INLINE R collect(const AxisWeights<Shape>& a, const R (&v)[Shape::nodes]) {
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE R collect(const AxisWeights<Shape, beside>& a, const R (&v)[Shape::nodes]) {
   if constexpr (Shape::nodes == 2)
     return v[0] * a.w_0 + v[1] * a.w_2;
   else
@@ -149,10 +159,10 @@ OGIVE_INLINE R collect(const AxisWeights<Shape>& a, const R (&v)[Shape::nodes]) 
 }
 
 // Sums of w v and of e v.
-template <class Shape, class R>
-OGIVE_INLINE R collect(const AxisWeights<Shape>& a, const R (&v)[Shape::nodes], R& slope) {
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE R collect(const AxisWeights<Shape, beside>& a, const R (&v)[Shape::nodes], R& slope) {
   if constexpr (Shape::nodes == 2) {
-    slope = (v[1] - v[0]) * a.e_2;
+    slope = scaled_by_slope(a, v[1] - v[0]);
     return v[0] * a.w_0 + v[1] * a.w_2;
   } else {
     const R below = v[0] - v[1], above = v[2] - v[1];
@@ -170,40 +180,35 @@ class Scatter {
   static constexpr bool gathers = N == 2;
 
   OGIVE_INLINE void begin(Scatter& s, Record* tile) {
-    s.tile_ = tile;
-    s.at_ = 0;
+    s.tile_ = s.first_ = tile;
     if constexpr (gathers)
       for (Record& sum : s.sum_) sum = Record{};
   }
   OGIVE_INLINE void move_to(Scatter& s, std::int64_t first) {
+    Record* const to = s.tile_ + first;
     if constexpr (gathers) {
-      if (first == s.at_) return;
+      if (to == s.first_) return;
       end(s);
       for (Record& sum : s.sum_) sum = Record{};
     }
-    s.at_ = first;
+    s.first_ = to;
   }
   OGIVE_INLINE void add(Scatter& s, int k, int j, int i, Record value) {
-    if constexpr (gathers)
-      s.sum_[(k * N + j) * N + i] += value;
-    else
-      s.tile_[s.at_ + (k * tile_edge + j) * tile_edge + i] += value;
+    if constexpr (gathers) s.sum_[(k * N + j) * N + i] += value;
+    else s.first_[(k * tile_edge + j) * tile_edge + i] += value;
   }
   OGIVE_INLINE void end(Scatter& s) {
-    if constexpr (gathers) {
-      Record* to = s.tile_ + s.at_;
+    if constexpr (gathers)
 #pragma GCC unroll 2
       for (int k = 0; k < N; ++k)
 #pragma GCC unroll 2
         for (int j = 0; j < N; ++j)
 #pragma GCC unroll 2
-          for (int i = 0; i < N; ++i) to[(k * tile_edge + j) * tile_edge + i] += s.sum_[(k * N + j) * N + i];
-    }
+          for (int i = 0; i < N; ++i) s.first_[(k * tile_edge + j) * tile_edge + i] += s.sum_[(k * N + j) * N + i];
   }
 
  private:
-  Record* tile_;
-  std::int64_t at_;
+  Record *tile_, *first_;
   Record sum_[gathers ? 8 : 1];
 };
 
@@ -215,15 +220,15 @@ OGIVE_INLINE void scatter_value(const Weights& weights, int lane, Record q, Scat
   const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
   Scatter<Shape>::move_to(to, weights.first[lane]);
   Record q_z[N];
-  spread<Shape>(a_z, q, q_z);
+  spread(a_z, q, q_z);
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
     Record q_zy[N];
-    spread<Shape>(a_y, q_z[k], q_zy);
+    spread(a_y, q_z[k], q_zy);
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
       Record out[N];
-      spread<Shape>(a_x, q_zy[j], out);
+      spread(a_x, q_zy[j], out);
 #pragma GCC unroll 3
       for (int i = 0; i < N; ++i) Scatter<Shape>::add(to, k, j, i, out[i]);
     }
@@ -232,29 +237,29 @@ OGIVE_INLINE void scatter_value(const Weights& weights, int lane, Record q, Scat
 
 // Adds q w_x w_y w_z + X e_x w_y w_z + Y w_x e_y w_z + Z w_x w_y e_z at each node of one particle; without q where
 // `slopes_only`.
-template <class Shape, bool slopes_only>
+template <class Shape, Beside beside, bool slopes_only>
 OGIVE_INLINE void scatter_slopes(const Weights& weights, int lane, Record q, Record X, Record Y, Record Z,
                                  Scatter<Shape>& to) {
   constexpr int N = Shape::nodes;
-  using A = AxisWeights<Shape>;
+  using A = AxisWeights<Shape, beside>;
   const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
   Scatter<Shape>::move_to(to, weights.first[lane]);
   Record q_z[N], X_z[N], Y_z[N];
   if constexpr (slopes_only)
-    spread_slope<Shape>(a_z, Z, q_z);
+    spread_slope(a_z, Z, q_z);
   else
-    spread<Shape>(a_z, q, Z, q_z);
-  spread<Shape>(a_z, X, X_z);
-  spread<Shape>(a_z, Y, Y_z);
+    spread(a_z, q, Z, q_z);
+  spread(a_z, X, X_z);
+  spread(a_z, Y, Y_z);
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
     Record q_zy[N], X_zy[N];
-    spread<Shape>(a_y, q_z[k], Y_z[k], q_zy);
-    spread<Shape>(a_y, X_z[k], X_zy);
+    spread(a_y, q_z[k], Y_z[k], q_zy);
+    spread(a_y, X_z[k], X_zy);
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
       Record out[N];
-      spread<Shape>(a_x, q_zy[j], X_zy[j], out);
+      spread(a_x, q_zy[j], X_zy[j], out);
 #pragma GCC unroll 3
       for (int i = 0; i < N; ++i) Scatter<Shape>::add(to, k, j, i, out[i]);
     }
@@ -278,18 +283,19 @@ OGIVE_INLINE R gather_value(const Weights& weights, int lane, const R* tile) {
       R along_x[N];
 #pragma GCC unroll 3
       for (int i = 0; i < N; ++i) along_x[i] = row[i];
-      along_y[j] = collect<Shape>(a_x, along_x);
+      along_y[j] = collect(a_x, along_x);
     }
-    along_z[k] = collect<Shape>(a_y, along_y);
+    along_z[k] = collect(a_y, along_y);
   }
-  return collect<Shape>(a_z, along_z);
+  return collect(a_z, along_z);
 }
 
-// Sums of N, dN/dx, dN/dy, dN/dz times the node's record; with moments in place of derivatives, the affine velocity.
-template <class Shape, class R>
+// Sums of N and its derivatives per cell times the node's record; with moments in place of derivatives, the affine
+// velocity.
+template <class Shape, Beside beside, class R>
 OGIVE_INLINE void gather_slopes(const Weights& weights, int lane, const R* tile, R& value, R& dx, R& dy, R& dz) {
   constexpr int N = Shape::nodes;
-  using A = AxisWeights<Shape>;
+  using A = AxisWeights<Shape, beside>;
   const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
   const R* const first = tile + weights.first[lane];
   R value_z[N], dx_z[N], dy_z[N];
@@ -302,14 +308,14 @@ OGIVE_INLINE void gather_slopes(const Weights& weights, int lane, const R* tile,
       R along_x[N];
 #pragma GCC unroll 3
       for (int i = 0; i < N; ++i) along_x[i] = row[i];
-      value_y[j] = collect<Shape>(a_x, along_x, dx_y[j]);
+      value_y[j] = collect(a_x, along_x, dx_y[j]);
     }
-    value_z[k] = collect<Shape>(a_y, value_y, dy_z[k]);
-    dx_z[k] = collect<Shape>(a_y, dx_y);
+    value_z[k] = collect(a_y, value_y, dy_z[k]);
+    dx_z[k] = collect(a_y, dx_y);
   }
-  value = collect<Shape>(a_z, value_z, dz);
-  dx = collect<Shape>(a_z, dx_z);
-  dy = collect<Shape>(a_z, dy_z);
+  value = collect(a_z, value_z, dz);
+  dx = collect(a_z, dx_z);
+  dy = collect(a_z, dy_z);
 }
 
 // Eqs. (27), (28): nodal mass and momentum.
@@ -335,8 +341,8 @@ void map_momentum(const KernelGroup& group, const KernelParticles& particles) {
       const Record momentum = load_aligned<Record>(particles.velocity + 4 * p) * m;
       if constexpr (affine) {
         const double* C = particles.affine + 9 * p;
-        scatter_slopes<Shape, false>(weights[i / lane_count], lane, momentum, load_three(C) * m, load_three(C + 3) * m,
-                                     load_three(C + 6) * m, sums);
+        scatter_slopes<Shape, Beside::MomentsToGrid, false>(weights[i / lane_count], lane, momentum, load_three(C) * m,
+                                                            load_three(C + 3) * m, load_three(C + 6) * m, sums);
       } else {
         scatter_value<Shape>(weights[i / lane_count], lane, momentum, sums);
       }
@@ -366,9 +372,10 @@ void map_contact(const KernelGroup& group, const KernelParticles& particles) {
     store_aligned(volume, mass * group.inverse_density * min(ratio, broadcast<Lanes>(1.0)));
 #pragma GCC unroll 1
     for (int lane = 0; lane < lane_count; ++lane) {
-      const double m = particles.position[4 * (p + lane) + 3];
-      scatter_slopes<Shape, false>(weights, lane, Record{0, 0, 0, volume[lane]}, Record{m, 0, 0, 0}, Record{0, m, 0, 0},
-                                   Record{0, 0, m, 0}, sums);
+      const double m = particles.position[4 * (p + lane) + 3] * group.inverse_cell;
+      scatter_slopes<Shape, Beside::Derivatives, false>(weights, lane, Record{0, 0, 0, volume[lane]},
+                                                        Record{m, 0, 0, 0}, Record{0, m, 0, 0}, Record{0, 0, m, 0},
+                                                        sums);
     }
   }
   Scatter<Shape>::end(sums);
@@ -405,7 +412,7 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
         RecordPair both;  // velocity and acceleration
         if (affine) {
           RecordPair dx, dy, dz;
-          gather_slopes<Shape>(weights[i / lane_count], lane, tile, both, dx, dy, dz);
+          gather_slopes<Shape, Beside::MomentsFromGrid>(weights[i / lane_count], lane, tile, both, dx, dy, dz);
           const Record X = first_of(dx), Y = first_of(dy), Z = first_of(dz);
           const Record dX = second_of(dx), dY = second_of(dy), dZ = second_of(dz);
           double* C = particles.affine + 9 * (p + lane);
