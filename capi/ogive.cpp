@@ -461,7 +461,7 @@ void copy_field(const Model& model, int body_index, const BodyState& body, const
   else if (name == "number") fill(1, [&](std::int64_t p, int) { return static_cast<double>(body.number[p]); });
   else if (name == "deformation_gradient") fill(9, [&](std::int64_t p, int c) { return body.deformation[c][p]; });
   else
-    fill(9, [&](std::int64_t p, int c) { return body.affine[affine_size * p + 4 * (c % 3) + c / 3]; });
+    fill(9, [&](std::int64_t p, int c) { return body.affine[affine_size * p + 3 * (c % 3) + c / 3]; });
 }
 
 // ------------------------------------------------------------------------------------------------------ save and load
@@ -1062,7 +1062,7 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
         for (int c = 0; c < 3; ++c) body.velocity[4 * p + c] = v[c];
         fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
       } else if (field_name == "affine_velocity") {
-        for (int c = 0; c < 9; ++c) body.affine[affine_size * p + 4 * (c % 3) + c / 3] = v[c];
+        for (int c = 0; c < 9; ++c) body.affine[affine_size * p + 3 * (c % 3) + c / 3] = v[c];
       } else if (field_name == "stress") {
         for (int c = 0; c < 6; ++c) body.stress[c][p] = v[c];
       } else if (field_name == "energy") {

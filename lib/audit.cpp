@@ -20,28 +20,47 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
   BodyAudit audit;
   audit.lower.fill(body.particles > 0 ? std::numeric_limits<double>::infinity() : 0);
   audit.upper.fill(body.particles > 0 ? -std::numeric_limits<double>::infinity() : 0);
+  const bool affine = !body.affine.empty(), plastic = !body.plastic_strain.empty(), thermal = !body.temperature.empty();
+  const double affine_factor = 0.125 * model.grid.cell_size * model.grid.cell_size;
   // Sums by group first: fewer additions in a row, hence less round-off.
   for (const Group& group : body.groups) {
     BodyAudit part;
-    for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+    Vector3 lower = audit.lower, upper = audit.upper;
+    const std::int64_t end = group.begin + group.count;
+    for (std::int64_t p = group.begin; p < end; ++p) {
       const double* x = &body.position[4 * p];
       const double* v = &body.velocity[4 * p];
       const double mass = x[3];
       part.mass += mass;
-      part.kinetic += 0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      part.kinetic += affine_energy(body, p, model.grid.cell_size);
-      part.internal += mass / density * body.energy[p];
+      part.kinetic += mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      part.internal += mass * body.energy[p];
       for (int c = 0; c < 3; ++c) {
         part.momentum[c] += mass * v[c];
         part.first_moment[c] += mass * x[c];
-        audit.lower[c] = std::min(audit.lower[c], x[c]);
-        audit.upper[c] = std::max(audit.upper[c], x[c]);
+        lower[c] = x[c] < lower[c] ? x[c] : lower[c];
+        upper[c] = x[c] > upper[c] ? x[c] : upper[c];
       }
-      if (!body.plastic_strain.empty())
-        audit.maximum_plastic_strain = std::max(audit.maximum_plastic_strain, body.plastic_strain[p]);
-      if (!body.temperature.empty())
-        audit.maximum_temperature = std::max(audit.maximum_temperature, body.temperature[p]);
     }
+    part.kinetic *= 0.5;
+    part.internal /= density;
+    if (affine) {
+      double sum = 0;
+      for (std::int64_t p = group.begin; p < end; ++p) {
+        const double* C = &body.affine[affine_size * p];
+        double rows[3];
+        for (int i = 0; i < 3; ++i) rows[i] = C[3 * i] * C[3 * i] + C[3 * i + 1] * C[3 * i + 1] + C[3 * i + 2] * C[3 * i + 2];
+        sum += body.position[4 * p + 3] * (rows[0] + rows[1] + rows[2]);
+      }
+      part.kinetic += affine_factor * sum;
+    }
+    if (plastic)
+      for (std::int64_t p = group.begin; p < end; ++p)
+        audit.maximum_plastic_strain = std::max(audit.maximum_plastic_strain, body.plastic_strain[p]);
+    if (thermal)
+      for (std::int64_t p = group.begin; p < end; ++p)
+        audit.maximum_temperature = std::max(audit.maximum_temperature, body.temperature[p]);
+    audit.lower = lower;
+    audit.upper = upper;
     audit.mass += part.mass;
     audit.kinetic += part.kinetic;
     audit.internal += part.internal;

@@ -294,6 +294,37 @@ void find_clamp_nodes(const Model& model, Workspace& workspace) {
     }
 }
 
+KernelGroup describe_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link) {
+  const Group& group = state.bodies[link.body].groups[link.group];
+  const Grid& grid = model.grid;
+  KernelGroup k;
+  k.begin = group.begin;
+  k.end = group.padded_end();
+  k.inverse_cell = 1.0 / grid.cell_size;
+  k.time_step = 0;
+  k.grid_velocity_fraction = model.numerics.grid_velocity_fraction();
+  k.inverse_density = 1.0 / model.material_of(link.body).density;
+  for (int axis = 0; axis < 3; ++axis) {
+    k.corner[axis] = link.corner[axis];
+    k.tile_low[axis] = link.tile_low[axis];
+    k.tile_high[axis] = link.tile_high[axis];
+    // Within the drift limit, and at free faces within the domain.
+    k.bound_low[axis] = link.corner[axis] + grid.cell_size * (1 + group.low[axis] - drift_limit);
+    k.bound_high[axis] = link.corner[axis] + grid.cell_size * (2 + group.high[axis] + drift_limit);
+    if (grid.face[2 * axis] == Face::Free) k.bound_low[axis] = std::max(k.bound_low[axis], grid.domain_min[axis]);
+    if (grid.face[2 * axis + 1] == Face::Free) k.bound_high[axis] = std::min(k.bound_high[axis], grid.domain_max[axis]);
+  }
+  k.bound_low[3] = -std::numeric_limits<double>::infinity();
+  k.bound_high[3] = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 27; ++i) {
+    const std::int32_t s = link.slot[i];
+    k.nodes[i] = s < 0 ? nullptr : &workspace.nodes[static_cast<std::size_t>(s) * block_nodes];
+    const std::int32_t c = s < 0 ? -1 : workspace.slots[s].contact;
+    k.contact[i] = c < 0 ? nullptr : &workspace.contacts[static_cast<std::size_t>(c) * block_nodes];
+  }
+  return k;
+}
+
 }  // namespace
 
 void bin_particles(const Model& model, State& state, Workspace& workspace, bool all) {
@@ -405,6 +436,9 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   workspace.nodes.resize(workspace.slots.size() * block_nodes);
   workspace.contacts.resize(static_cast<std::size_t>(contacts) * block_nodes);
   workspace.approach.resize(model.contact_method == ContactMethod::HuangSecond ? workspace.contacts.size() : 0);
+  workspace.kernel_groups.clear();
+  for (const GroupLinks& link : workspace.links)
+    workspace.kernel_groups.push_back(describe_group(model, state, workspace, link));
   workspace.stress_sums.resize(workspace.links.size());
   workspace.move_sums.resize(workspace.links.size());
   workspace.slot_contact_force.resize(workspace.slots.size());
@@ -415,35 +449,10 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   workspace.linked = true;
 }
 
-KernelGroup kernel_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link, double dt) {
-  const Group& group = state.bodies[link.body].groups[link.group];
-  const Grid& grid = model.grid;
-  KernelGroup k;
-  k.begin = group.begin;
-  k.end = group.padded_end();
-  k.inverse_cell = 1.0 / grid.cell_size;
-  k.time_step = dt;
-  k.grid_velocity_fraction = model.numerics.grid_velocity_fraction();
-  k.inverse_density = 1.0 / model.material_of(link.body).density;
-  for (int axis = 0; axis < 3; ++axis) {
-    k.corner[axis] = link.corner[axis];
-    k.tile_low[axis] = link.tile_low[axis];
-    k.tile_high[axis] = link.tile_high[axis];
-    // Within the drift limit, and at free faces within the domain.
-    k.bound_low[axis] = link.corner[axis] + grid.cell_size * (1 + group.low[axis] - drift_limit);
-    k.bound_high[axis] = link.corner[axis] + grid.cell_size * (2 + group.high[axis] + drift_limit);
-    if (grid.face[2 * axis] == Face::Free) k.bound_low[axis] = std::max(k.bound_low[axis], grid.domain_min[axis]);
-    if (grid.face[2 * axis + 1] == Face::Free) k.bound_high[axis] = std::min(k.bound_high[axis], grid.domain_max[axis]);
-  }
-  k.bound_low[3] = -std::numeric_limits<double>::infinity();
-  k.bound_high[3] = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 27; ++i) {
-    const std::int32_t s = link.slot[i];
-    k.nodes[i] = s < 0 ? nullptr : &workspace.nodes[static_cast<std::size_t>(s) * block_nodes];
-    const std::int32_t c = s < 0 ? -1 : workspace.slots[s].contact;
-    k.contact[i] = c < 0 ? nullptr : &workspace.contacts[static_cast<std::size_t>(c) * block_nodes];
-  }
-  return k;
+KernelGroup kernel_group(const Model&, const State&, Workspace& workspace, const GroupLinks& link, double dt) {
+  KernelGroup group = workspace.kernel_groups[static_cast<std::size_t>(&link - workspace.links.data())];
+  group.time_step = dt;
+  return group;
 }
 
 KernelParticles kernel_particles(BodyState& body) {
@@ -496,7 +505,7 @@ KernelMaterial kernel_material(const Material& material, double cell_size) {
 
 std::int64_t Workspace::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
-  std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(approach) + bytes(links) + bytes(pencils) + bytes(mixed) +
+  std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(approach) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
                        bytes(scratch);
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);

@@ -75,6 +75,7 @@ struct Workspace {
   AlignedVector<ContactRecord> contacts;  // 64 a slot that has them
   std::vector<Vector3> approach;          // velocity that (25) took from the node; 64 a slot of a mixed block
   std::vector<GroupLinks> links;          // ordered by colour, pencil, body, block x
+  std::vector<KernelGroup> kernel_groups; // what kernels are told of each link; all but the time step
   std::vector<Pencil> pencils;
   std::array<std::int32_t, 5> colour{};   // first pencil of each colour, and the end
   std::vector<MixedBlock> mixed;

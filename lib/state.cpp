@@ -51,7 +51,7 @@ void allocate_transfer(const Model& model, const Material& material, BodyState& 
   if (model.numerics.affine() && body.affine.empty()) {
     body.affine.assign(affine_size * n, 0.0);
     const Vector3& w = body.initial_spin;
-    const double field[affine_size] = {0, w[2], -w[1], 0, -w[2], 0, w[0], 0, w[1], -w[0], 0, 0};
+    const double field[affine_size] = {0, w[2], -w[1], -w[2], 0, w[0], w[1], -w[0], 0};
     for (std::size_t i = 0; i < body.affine.size(); ++i) body.affine[i] = field[i % affine_size];
   }
   if (model.numerics.update_order == UpdateOrder::StressLast && material.viscous() && body.viscous_pressure.empty())

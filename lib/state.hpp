@@ -21,7 +21,7 @@ namespace ogive {
 class Archive;
 
 constexpr int block_cells = 4;        // cells along an edge of a block
-constexpr int affine_size = 12;       // doubles of a particle's affine velocity: three records of four
+constexpr int affine_size = 9;        // doubles of a particle's affine velocity
 constexpr int tile_nodes = 7;         // nodes along an edge of a group's tile: the block's 4, one below, two above
 
 struct Group {
@@ -52,7 +52,7 @@ struct BodyState {
   std::int64_t padded = 0;
   AlignedVector<double> position;  // records {x, y, z, mass}
   AlignedVector<double> velocity;  // records {vx, vy, vz, 1}
-  AlignedVector<double> affine;    // three records a particle, dv/dx, dv/dy, dv/dz of its affine velocity field
+  AlignedVector<double> affine;    // three vectors a particle, dv/dx, dv/dy, dv/dz of its affine velocity field
   std::array<AlignedVector<double>, 6> stress;  // Cauchy: xx yy zz yz xz xy, tension positive
   AlignedVector<double> volume_ratio;           // current / initial volume
   AlignedVector<double> energy;                 // internal energy per initial volume

@@ -103,6 +103,28 @@ OGIVE_INLINE void store_aligned(double* to, V value) {
   store(static_cast<double*>(__builtin_assume_aligned(to, sizeof(V))), value);
 }
 
+// Three doubles and a zero; no more is read, and none but the three is written.
+OGIVE_INLINE Vec<4> load_three(const double* from) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  return _mm256_maskz_loadu_pd(7, from);
+#elif defined(__AVX__)
+  return _mm256_maskload_pd(from, _mm256_set_epi64x(0, -1, -1, -1));
+#else
+  return Vec<4>{from[0], from[1], from[2], 0.0};
+#endif
+}
+OGIVE_INLINE void store_three(double* to, Vec<4> v) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  _mm256_mask_storeu_pd(to, 7, v);
+#else
+  store(to, __builtin_shufflevector(v, v, 0, 1));
+  to[2] = v[2];
+#endif
+}
+
+// Asks for the cache line at `at`, which need not exist.
+OGIVE_INLINE void prefetch(const double* at) { __builtin_prefetch(at); }
+
 // ------------------------------------------------------------------------------------------------------- halves
 
 OGIVE_INLINE Vec<2> lower_half(Vec<4> v) { return __builtin_shufflevector(v, v, 0, 1); }

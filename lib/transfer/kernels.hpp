@@ -40,7 +40,7 @@ struct KernelGroup {
 struct KernelParticles {
   double* position;
   double* velocity;
-  double* affine;        // three records a particle
+  double* affine;        // nine a particle: three vectors, without a fourth component
   double* stress[6];
   double* volume_ratio;
   double* energy;

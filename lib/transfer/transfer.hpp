@@ -1,14 +1,21 @@
 // Maps between the particles of a group and its tile: Huang et al. 2010, Eqs. (27), (28), (9), (29), (31), (33), (34).
 //
-// Affine velocity (Jiang, Schroeder, Selle, Teran, Stomakhin 2015): a particle carries the field v_p + C_p (x - x_p), and
+// Affine velocity (Jiang, Schroeder, Selle, Teran, Stomakhin 2015): a particle carries the field v_p + C_p (x - x_p),
+// and
 //   (28)  p_I = sum m_p N (v_p + C_p (x_I - x_p)),     C_p = 4/h^2 sum_I N v_I (x_I - x_p)^T.
-// h^2/4 is the second moment of the quadratic B-spline. For trilinear functions, whose moment xi (1 - xi) h^2 vanishes at
-// the nodes, it is its largest value: C_p is then the velocity gradient times 4 xi (1 - xi), which keeps it bounded where
-// a particle touches a node with next to no mass.
+// h^2/4 is the second moment of the quadratic B-spline. For trilinear functions, whose moment xi (1 - xi) h^2 vanishes
+// at the nodes, it is its largest value: C_p is then the velocity gradient times 4 xi (1 - xi), which keeps it bounded
+// where a particle touches a node with next to no mass.
 //
 // Four particles at a time: their weights are computed lane by lane and kept in small arrays, then each particle meets
-// its nodes as records of four doubles, one fused multiply-add a node and sum. Sums over nodes are nested (z, y, x), so
-// that the products of weights are never formed.
+// its nodes as records of four doubles. Sums over nodes are nested (z, y, x), so that the products of weights are never
+// formed. Along one axis the middle node of a B-spline is never weighed: with the weights w and slopes e of the outer
+// nodes, sum w = 1 and sum e = 0 (e: derivatives, or first moments, which vanish as well) give
+//   to nodes     o_0 = q w_0 + A e_0,  o_2 = q w_2 + A e_2,  o_1 = q - (o_0 + o_2)
+//   from nodes   sum w v = v_1 + w_0 (v_0 - v_1) + w_2 (v_2 - v_1),  sum e v = e_0 (v_0 - v_1) + e_2 (v_2 - v_1)
+// two thirds of the multiplications; sums and differences run beside them. The middle weight is at least a half, so
+// that nothing cancels. Of a trilinear function both nodes are weighed: there the smaller weight may be 1e-9, and what
+// a node with so little mass receives must be accurate in proportion.
 #pragma once
 
 #include "shape/weights.hpp"
@@ -22,20 +29,32 @@ namespace OGIVE_ISA_NAMESPACE {
 using Lanes = Vec<4>;
 constexpr int lane_count = 4;
 
-// What goes with the weights: derivatives per length (d/dx, not d/dxi), moments 4 N (x_I - x_p) / h^2, or distances.
-enum class Beside { Nothing, Derivatives, Moments, Distances };
+// Asks for what four particles will need a few dozen particles later.
+constexpr int prefetch_distance = 48;
+template <int size>
+OGIVE_INLINE void prefetch_records(const double* array, std::int64_t p) {
+#pragma GCC unroll 5
+  for (int line = 0; line < (size * lane_count + 7) / 8; ++line)
+    prefetch(array + size * (p + prefetch_distance) + 8 * line);
+}
 
-// Weights of four particles, by axis, node and particle.
-template <class Shape>
+// What goes with the weights: derivatives per cell (d/dxi, not d/dx), moments 4 N (x_I - x_p) / h^2, or moments
+// N (x_I - x_p).
+enum class Beside { Nothing, Derivatives, MomentsFromGrid, MomentsToGrid };
+
+// Particles whose weights are computed ahead of their use.
+constexpr int stretch = 32;
+
+// Weights and slopes of the outer nodes of four particles, by axis, node and particle. The moments of a linear function
+// are -e[1] and e[1]; its derivatives, -1 and 1, are not kept.
 struct Weights {
-  static constexpr int N = Shape::nodes;
-  alignas(32) double w[3][N][lane_count];
-  alignas(32) double d[3][N][lane_count];  // derivatives, moments or distances x_I - x_p
-  alignas(32) double first[lane_count];    // tile node of the first weight, as a whole number
+  alignas(32) double w[3][2][lane_count];
+  alignas(32) double e[3][2][lane_count];
+  alignas(32) std::int64_t first[lane_count];  // tile node of the first weight
 };
 
-template <Beside beside, class Shape>
-OGIVE_INLINE void fill(Weights<Shape>& weights, const KernelGroup& group, Lanes x, Lanes y, Lanes z) {
+template <class Shape, Beside beside>
+OGIVE_INLINE void fill(Weights& weights, const KernelGroup& group, Lanes x, Lanes y, Lanes z) {
   constexpr int N = Shape::nodes;
   const Lanes position[3] = {x, y, z};
   Lanes base[3];
@@ -43,122 +62,260 @@ OGIVE_INLINE void fill(Weights<Shape>& weights, const KernelGroup& group, Lanes 
     Lanes w[N], d[N];
     const Lanes xi = (position[axis] - group.corner[axis]) * group.inverse_cell;
     Shape::at(xi, base[axis], w, d);
-    for (int n = 0; n < N; ++n) {
-      store_aligned(weights.w[axis][n], w[n]);
-      const Lanes distance = base[axis] + static_cast<double>(n) - xi;  // in cells
-      if (beside == Beside::Derivatives) store_aligned(weights.d[axis][n], d[n] * group.inverse_cell);
-      if (beside == Beside::Moments) store_aligned(weights.d[axis][n], distance * w[n] * (4.0 * group.inverse_cell));
-      if (beside == Beside::Distances) store_aligned(weights.d[axis][n], distance * (1.0 / group.inverse_cell));
+    for (int side = 0; side < 2; ++side) {
+      const int n = side * (N - 1);
+      store_aligned(weights.w[axis][side], w[n]);
+      if (N == 2 && side == 0) continue;
+      // In cells; of a linear function both moments are -+ w_0 w_1.
+      const Lanes moment = N == 2 ? w[0] * w[1] : (base[axis] + static_cast<double>(n) - xi) * w[n];
+      if (beside == Beside::Derivatives && N == 3) store_aligned(weights.e[axis][side], d[n]);
+      if (beside == Beside::MomentsFromGrid) store_aligned(weights.e[axis][side], moment * (4.0 * group.inverse_cell));
+      if (beside == Beside::MomentsToGrid) store_aligned(weights.e[axis][side], moment * (1.0 / group.inverse_cell));
     }
   }
-  store_aligned(weights.first, (base[2] * tile_edge + base[1]) * tile_edge + base[0]);
+  // A whole number in the low bits of 2^52 + it.
+  const Lanes first = (base[2] * tile_edge + base[1]) * tile_edge + base[0] + 0x1p52;
+  const IntVec<lane_count> number = as_int(first) & std::int64_t{0xffff};
+  __builtin_memcpy(weights.first, &number, sizeof number);
 }
 
-// Adds q N at each node of one particle to the tile.
+// Weights of the particles from `start` on, `stretch` at most, four in each of `weights`. They are computed ahead of
+// their use so that the chain of operations of each does not hold up the particle before it. Returns how many there
+// are.
+template <class Shape, Beside beside>
+OGIVE_INLINE int fill_stretch(Weights (&weights)[stretch / lane_count], const KernelGroup& group,
+                              const double* position, std::int64_t start) {
+  const int count = static_cast<int>(group.end - start < stretch ? group.end - start : stretch);
+  for (int i = 0; i < count; i += lane_count) {
+    prefetch_records<4>(position, start + i);
+    Lanes x, y, z, mass;
+    load_records(position + 4 * (start + i), x, y, z, mass);
+    fill<Shape, beside>(weights[i / lane_count], group, x, y, z);
+  }
+  return count;
+}
+
+// The weights and slopes of one particle along one axis.
+template <class Shape, Beside beside = Beside::Nothing>
+struct AxisWeights {
+  static constexpr bool unit_slopes = Shape::nodes == 2 && beside == Beside::Derivatives;
+  double w_0, w_2, e_0, e_2;
+  OGIVE_INLINE AxisWeights of(const Weights& weights, int axis, int lane) {
+    return {weights.w[axis][0][lane], weights.w[axis][1][lane], weights.e[axis][0][lane], weights.e[axis][1][lane]};
+  }
+};
+
+// A times the slope at the upper node of a linear function.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE R scaled_by_slope(const AxisWeights<Shape, beside>& a, R A) {
+  if constexpr (AxisWeights<Shape, beside>::unit_slopes)
+    return A;
+  else
+    return A * a.e_2;
+}
+
+// q w at the nodes along an axis.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE void spread(const AxisWeights<Shape, beside>& a, R q, R (&out)[Shape::nodes]) {
+  out[0] = q * a.w_0;
+  out[Shape::nodes - 1] = q * a.w_2;
+  if constexpr (Shape::nodes == 3) out[1] = q - (out[0] + out[2]);
+}
+
+// q w + A e.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE void spread(const AxisWeights<Shape, beside>& a, R q, R A, R (&out)[Shape::nodes]) {
+  if constexpr (Shape::nodes == 2) {
+    const R moved = scaled_by_slope(a, A);
+    out[0] = q * a.w_0 - moved;
+    out[1] = q * a.w_2 + moved;
+  } else {
+    out[0] = q * a.w_0 + A * a.e_0;
+    out[2] = q * a.w_2 + A * a.e_2;
+    out[1] = q - (out[0] + out[2]);
+  }
+}
+
+// A e.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE void spread_slope(const AxisWeights<Shape, beside>& a, R A, R (&out)[Shape::nodes]) {
+  if constexpr (Shape::nodes == 2) {
+    out[1] = scaled_by_slope(a, A);
+    out[0] = -out[1];
+  } else {
+    out[0] = A * a.e_0;
+    out[2] = A * a.e_2;
+    out[1] = -(out[0] + out[2]);
+  }
+}
+
+// Sum of w v along an axis.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE R collect(const AxisWeights<Shape, beside>& a, const R (&v)[Shape::nodes]) {
+  if constexpr (Shape::nodes == 2)
+    return v[0] * a.w_0 + v[1] * a.w_2;
+  else
+    return v[1] + (v[0] - v[1]) * a.w_0 + (v[2] - v[1]) * a.w_2;
+}
+
+// Sums of w v and of e v.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE R collect(const AxisWeights<Shape, beside>& a, const R (&v)[Shape::nodes], R& slope) {
+  if constexpr (Shape::nodes == 2) {
+    slope = scaled_by_slope(a, v[1] - v[0]);
+    return v[0] * a.w_0 + v[1] * a.w_2;
+  } else {
+    const R below = v[0] - v[1], above = v[2] - v[1];
+    slope = below * a.e_0 + above * a.e_2;
+    return v[1] + below * a.w_0 + above * a.w_2;
+  }
+}
+
+// Sums over a tile. Neighbours in a group mostly share their nodes: the eight sums of a trilinear function stay in
+// registers until the first node changes, the 27 of a B-spline are added to the tile at once.
 template <class Shape>
-OGIVE_INLINE void scatter_value(const Weights<Shape>& weights, int lane, Record q, Record* tile) {
+class Scatter {
+ public:
+  static constexpr int N = Shape::nodes;
+  static constexpr bool gathers = N == 2;
+
+  OGIVE_INLINE void begin(Scatter& s, Record* tile) {
+    s.tile_ = s.first_ = tile;
+    if constexpr (gathers)
+      for (Record& sum : s.sum_) sum = Record{};
+  }
+  OGIVE_INLINE void move_to(Scatter& s, std::int64_t first) {
+    Record* const to = s.tile_ + first;
+    if constexpr (gathers) {
+      if (to == s.first_) return;
+      end(s);
+      for (Record& sum : s.sum_) sum = Record{};
+    }
+    s.first_ = to;
+  }
+  OGIVE_INLINE void add(Scatter& s, int k, int j, int i, Record value) {
+    if constexpr (gathers) s.sum_[(k * N + j) * N + i] += value;
+    else s.first_[(k * tile_edge + j) * tile_edge + i] += value;
+  }
+  OGIVE_INLINE void end(Scatter& s) {
+    if constexpr (gathers)
+#pragma GCC unroll 2
+      for (int k = 0; k < N; ++k)
+#pragma GCC unroll 2
+        for (int j = 0; j < N; ++j)
+#pragma GCC unroll 2
+          for (int i = 0; i < N; ++i) s.first_[(k * tile_edge + j) * tile_edge + i] += s.sum_[(k * N + j) * N + i];
+  }
+
+ private:
+  Record *tile_, *first_;
+  Record sum_[gathers ? 8 : 1];
+};
+
+// Adds q w at each node of one particle.
+template <class Shape>
+OGIVE_INLINE void scatter_value(const Weights& weights, int lane, Record q, Scatter<Shape>& to) {
   constexpr int N = Shape::nodes;
-  Record* first = tile + static_cast<std::int64_t>(weights.first[lane]);
+  using A = AxisWeights<Shape>;
+  const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
+  Scatter<Shape>::move_to(to, weights.first[lane]);
+  Record q_z[N];
+  spread(a_z, q, q_z);
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
-    const Record q_z = q * weights.w[2][k][lane];
+    Record q_zy[N];
+    spread(a_y, q_z[k], q_zy);
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
-      const Record q_zy = q_z * weights.w[1][j][lane];
-      Record* row = first + (k * tile_edge + j) * tile_edge;
+      Record out[N];
+      spread(a_x, q_zy[j], out);
 #pragma GCC unroll 3
-      for (int i = 0; i < N; ++i) row[i] += q_zy * weights.w[0][i][lane];
+      for (int i = 0; i < N; ++i) Scatter<Shape>::add(to, k, j, i, out[i]);
     }
   }
 }
 
-// Adds (q + X x + Y y + Z z) N at each node of one particle to the tile, (x, y, z) the distance from particle to node.
-template <class Shape>
-OGIVE_INLINE void scatter_affine(const Weights<Shape>& weights, int lane, Record q, Record X, Record Y, Record Z,
-                                 Record* tile) {
+// Adds q w_x w_y w_z + X e_x w_y w_z + Y w_x e_y w_z + Z w_x w_y e_z at each node of one particle; without q where
+// `slopes_only`.
+template <class Shape, Beside beside, bool slopes_only>
+OGIVE_INLINE void scatter_slopes(const Weights& weights, int lane, Record q, Record X, Record Y, Record Z,
+                                 Scatter<Shape>& to) {
   constexpr int N = Shape::nodes;
-  Record* first = tile + static_cast<std::int64_t>(weights.first[lane]);
+  using A = AxisWeights<Shape, beside>;
+  const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
+  Scatter<Shape>::move_to(to, weights.first[lane]);
+  Record q_z[N], X_z[N], Y_z[N];
+  if constexpr (slopes_only)
+    spread_slope(a_z, Z, q_z);
+  else
+    spread(a_z, q, Z, q_z);
+  spread(a_z, X, X_z);
+  spread(a_z, Y, Y_z);
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
-    const Record q_z = (q + Z * weights.d[2][k][lane]) * weights.w[2][k][lane];
-    const Record X_z = X * weights.w[2][k][lane], Y_z = Y * weights.w[2][k][lane];
+    Record q_zy[N], X_zy[N];
+    spread(a_y, q_z[k], Y_z[k], q_zy);
+    spread(a_y, X_z[k], X_zy);
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
-      const Record q_zy = (q_z + Y_z * weights.d[1][j][lane]) * weights.w[1][j][lane];
-      const Record X_zy = X_z * weights.w[1][j][lane];
-      Record* row = first + (k * tile_edge + j) * tile_edge;
+      Record out[N];
+      spread(a_x, q_zy[j], X_zy[j], out);
 #pragma GCC unroll 3
-      for (int i = 0; i < N; ++i) row[i] += (q_zy + X_zy * weights.d[0][i][lane]) * weights.w[0][i][lane];
+      for (int i = 0; i < N; ++i) Scatter<Shape>::add(to, k, j, i, out[i]);
     }
   }
 }
 
-// Adds X dN/dx + Y dN/dy + Z dN/dz at each node of one particle to the tile.
-template <class Shape>
-OGIVE_INLINE void scatter_gradient(const Weights<Shape>& weights, int lane, Record X, Record Y, Record Z, Record* tile) {
-  constexpr int N = Shape::nodes;
-  Record* first = tile + static_cast<std::int64_t>(weights.first[lane]);
-#pragma GCC unroll 3
-  for (int k = 0; k < N; ++k) {
-    const Record X_z = X * weights.w[2][k][lane], Y_z = Y * weights.w[2][k][lane], Z_z = Z * weights.d[2][k][lane];
-#pragma GCC unroll 3
-    for (int j = 0; j < N; ++j) {
-      const Record along = X_z * weights.w[1][j][lane];
-      const Record across = Y_z * weights.d[1][j][lane] + Z_z * weights.w[1][j][lane];
-      Record* row = first + (k * tile_edge + j) * tile_edge;
-#pragma GCC unroll 3
-      for (int i = 0; i < N; ++i) row[i] += along * weights.d[0][i][lane] + across * weights.w[0][i][lane];
-    }
-  }
-}
-
-// Sum of N times what `first` holds at the nodes: records, or pairs of them.
+// Sum of N times what the nodes hold: records, or pairs of them.
 template <class Shape, class R>
-OGIVE_INLINE R gather_value(const Weights<Shape>& weights, int lane, const R* first) {
+OGIVE_INLINE R gather_value(const Weights& weights, int lane, const R* tile) {
   constexpr int N = Shape::nodes;
-  R sum{};
+  using A = AxisWeights<Shape>;
+  const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
+  const R* const first = tile + weights.first[lane];
+  R along_z[N];
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
-    R sum_y{};
+    R along_y[N];
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
-      const R* row = first + (k * tile_edge + j) * tile_edge;
-      R sum_x{};
+      const R* const row = first + (k * tile_edge + j) * tile_edge;
+      R along_x[N];
 #pragma GCC unroll 3
-      for (int i = 0; i < N; ++i) sum_x += row[i] * weights.w[0][i][lane];
-      sum_y += sum_x * weights.w[1][j][lane];
+      for (int i = 0; i < N; ++i) along_x[i] = row[i];
+      along_y[j] = collect(a_x, along_x);
     }
-    sum += sum_y * weights.w[2][k][lane];
+    along_z[k] = collect(a_y, along_y);
   }
-  return sum;
+  return collect(a_z, along_z);
 }
 
-// Sums of N, dN/dx, dN/dy, dN/dz times the node's record; with moments in place of derivatives, the affine velocity.
-template <class Shape, class R>
-OGIVE_INLINE void gather_gradient(const Weights<Shape>& weights, int lane, const R* first, R& value, R& dx, R& dy, R& dz) {
+// Sums of N and its derivatives per cell times the node's record; with moments in place of derivatives, the affine
+// velocity.
+template <class Shape, Beside beside, class R>
+OGIVE_INLINE void gather_slopes(const Weights& weights, int lane, const R* tile, R& value, R& dx, R& dy, R& dz) {
   constexpr int N = Shape::nodes;
-  value = dx = dy = dz = R{};
+  using A = AxisWeights<Shape, beside>;
+  const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
+  const R* const first = tile + weights.first[lane];
+  R value_z[N], dx_z[N], dy_z[N];
 #pragma GCC unroll 3
   for (int k = 0; k < N; ++k) {
-    R value_y{}, dx_y{}, dy_y{};
+    R value_y[N], dx_y[N];
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
-      const R* row = first + (k * tile_edge + j) * tile_edge;
-      R value_x{}, dx_x{};
+      const R* const row = first + (k * tile_edge + j) * tile_edge;
+      R along_x[N];
 #pragma GCC unroll 3
-      for (int i = 0; i < N; ++i) {
-        value_x += row[i] * weights.w[0][i][lane];
-        dx_x += row[i] * weights.d[0][i][lane];
-      }
-      value_y += value_x * weights.w[1][j][lane];
-      dx_y += dx_x * weights.w[1][j][lane];
-      dy_y += value_x * weights.d[1][j][lane];
+      for (int i = 0; i < N; ++i) along_x[i] = row[i];
+      value_y[j] = collect(a_x, along_x, dx_y[j]);
     }
-    dx += dx_y * weights.w[2][k][lane];
-    dy += dy_y * weights.w[2][k][lane];
-    dz += value_y * weights.d[2][k][lane];
-    value += value_y * weights.w[2][k][lane];
+    value_z[k] = collect(a_y, value_y, dy_z[k]);
+    dx_z[k] = collect(a_y, dx_y);
   }
+  value = collect(a_z, value_z, dz);
+  dx = collect(a_z, dx_z);
+  dy = collect(a_z, dy_z);
 }
 
 // Eqs. (27), (28): nodal mass and momentum.
@@ -166,63 +323,73 @@ template <class Shape, bool affine>
 void map_momentum(const KernelGroup& group, const KernelParticles& particles) {
   alignas(64) Record tile[tile_size];
   clear_tile(group, tile);
-  Weights<Shape> weights;
-  for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
-    Lanes x, y, z, mass;
-    load_records(particles.position + 4 * p, x, y, z, mass);
-    fill<affine ? Beside::Distances : Beside::Nothing>(weights, group, x, y, z);
-    for (int lane = 0; lane < lane_count; ++lane) {
+  Scatter<Shape> sums;
+  Scatter<Shape>::begin(sums, tile);
+  Weights weights[stretch / lane_count];
+  for (std::int64_t start = group.begin; start < group.end; start += stretch) {
+    const int count = fill_stretch < Shape,
+              affine ? Beside::MomentsToGrid : Beside::Nothing > (weights, group, particles.position, start);
+    for (int i = 0; i < count; ++i) {
+      const std::int64_t p = start + i;
+      const int lane = i % lane_count;
+      if (lane == 0) {
+        prefetch_records<4>(particles.velocity, p);
+        if constexpr (affine) prefetch_records<9>(particles.affine, p);
+      }
       // The fourth component of a velocity record is 1: the mass comes along.
-      const double m = particles.position[4 * (p + lane) + 3];
-      const Record momentum = load_aligned<Record>(particles.velocity + 4 * (p + lane)) * m;
-      if (affine) {
-        const double* C = particles.affine + 12 * (p + lane);
-        scatter_affine<Shape>(weights, lane, momentum, load_aligned<Record>(C) * m, load_aligned<Record>(C + 4) * m,
-                              load_aligned<Record>(C + 8) * m, tile);
+      const double m = particles.position[4 * p + 3];
+      const Record momentum = load_aligned<Record>(particles.velocity + 4 * p) * m;
+      if constexpr (affine) {
+        const double* C = particles.affine + 9 * p;
+        scatter_slopes<Shape, Beside::MomentsToGrid, false>(weights[i / lane_count], lane, momentum, load_three(C) * m,
+                                                            load_three(C + 3) * m, load_three(C + 6) * m, sums);
       } else {
-        scatter_value<Shape>(weights, lane, momentum, tile);
+        scatter_value<Shape>(weights[i / lane_count], lane, momentum, sums);
       }
     }
   }
-  for_tile_nodes(group, [&](int t, int block, int node) {
-    double* v = group.nodes[block][node].v;
-    store_aligned(v, load_aligned<Record>(v) + tile[t]);
-  });
+  Scatter<Shape>::end(sums);
+  add_tile(
+      group, tile, [](const KernelGroup& g, int block) { return g.nodes[block] ? g.nodes[block]->v : nullptr; },
+      sizeof(NodeRecord) / sizeof(double));
 }
 
-// Eq. (9) before it is made a unit vector, and the volume that the field fills at the node. A particle fills its current
-// volume, but what has opened up by tension or failure does not count: volume_ratio above 1 is taken as 1.
+// Eq. (9) before it is made a unit vector, and the volume that the field fills at the node. A particle fills its
+// current volume, but what has opened up by tension or failure does not count: volume_ratio above 1 is taken as 1.
 template <class Shape>
 void map_contact(const KernelGroup& group, const KernelParticles& particles) {
   alignas(64) Record tile[tile_size];
   clear_tile(group, tile);
-  Weights<Shape> weights;
+  Scatter<Shape> sums;
+  Scatter<Shape>::begin(sums, tile);
+  Weights weights;
   for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
     Lanes x, y, z, mass;
     load_records(particles.position + 4 * p, x, y, z, mass);
-    fill<Beside::Derivatives>(weights, group, x, y, z);
+    fill<Shape, Beside::Derivatives>(weights, group, x, y, z);
     const Lanes ratio = load_aligned<Lanes>(particles.volume_ratio + p);
     alignas(32) double volume[lane_count];
     store_aligned(volume, mass * group.inverse_density * min(ratio, broadcast<Lanes>(1.0)));
+#pragma GCC unroll 1
     for (int lane = 0; lane < lane_count; ++lane) {
-      const double m = particles.position[4 * (p + lane) + 3];
-      scatter_gradient<Shape>(weights, lane, Record{m, 0, 0, 0}, Record{0, m, 0, 0}, Record{0, 0, m, 0}, tile);
-      scatter_value<Shape>(weights, lane, Record{0, 0, 0, volume[lane]}, tile);
+      const double m = particles.position[4 * (p + lane) + 3] * group.inverse_cell;
+      scatter_slopes<Shape, Beside::Derivatives, false>(weights, lane, Record{0, 0, 0, volume[lane]},
+                                                        Record{m, 0, 0, 0}, Record{0, m, 0, 0}, Record{0, 0, m, 0},
+                                                        sums);
     }
   }
-  for_tile_nodes(group, [&](int t, int block, int node) {
-    if (!group.contact[block]) return;
-    double* to = group.contact[block][node].gradient;
-    store_aligned(to, load_aligned<Record>(to) + tile[t]);
-  });
+  Scatter<Shape>::end(sums);
+  add_tile(
+      group, tile,
+      [](const KernelGroup& g, int block) { return g.contact[block] ? g.contact[block]->gradient : nullptr; },
+      sizeof(ContactRecord) / sizeof(double));
 }
 
 // Eqs. (33), (34). What PIC and APIC put in place of the increment, or a part of it, is the grid's own velocity.
 template <class Shape, bool affine>
 void update_particles(const KernelGroup& group, const KernelParticles& particles, MoveSums& sums) {
   alignas(64) RecordPair tile[tile_size];  // velocity, acceleration
-  for_tile_nodes(group, [&](int t, int block, int node) {
-    const NodeRecord& record = group.nodes[block][node];
+  read_tile(group, [&](int t, const NodeRecord& record) {
     tile[t] = pair_of(load_aligned<Record>(record.v), load_aligned<Record>(record.f));
   });
   const Record low = load<Record>(group.bound_low), high = load<Record>(group.bound_high);
@@ -231,55 +398,59 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
   Lanes speed_squared{};
   const double time_step_squared = group.time_step * group.time_step;
   Record power{}, lost{}, lost_affine{};
-  Weights<Shape> weights;
-  for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
-    Lanes x, y, z, mass;
-    load_records(particles.position + 4 * p, x, y, z, mass);
-    fill<affine ? Beside::Moments : Beside::Nothing>(weights, group, x, y, z);
-    Record v[lane_count];
-    for (int lane = 0; lane < lane_count; ++lane) {
-      const RecordPair* first = tile + static_cast<std::int64_t>(weights.first[lane]);
-      double* position = particles.position + 4 * (p + lane);
-      RecordPair both;  // velocity and acceleration
-      if (affine) {
-        RecordPair dx, dy, dz;
-        gather_gradient<Shape>(weights, lane, first, both, dx, dy, dz);
-        const Record X = first_of(dx), Y = first_of(dy), Z = first_of(dz);
-        const Record dX = second_of(dx), dY = second_of(dy), dZ = second_of(dz);
-        double* C = particles.affine + 12 * (p + lane);
-        const Record X_0 = load_aligned<Record>(C), Y_0 = load_aligned<Record>(C + 4), Z_0 = load_aligned<Record>(C + 8);
-        lost_affine += (X_0 * X_0 + Y_0 * Y_0 + Z_0 * Z_0 - X * X - Y * Y - Z * Z +
-                        (dX * dX + dY * dY + dZ * dZ) * time_step_squared) * position[3];
-        store_aligned(C, X);
-        store_aligned(C + 4, Y);
-        store_aligned(C + 8, Z);
-      } else {
-        both = gather_value<Shape>(weights, lane, first);
+  Weights weights[stretch / lane_count];
+  for (std::int64_t start = group.begin; start < group.end; start += stretch) {
+    const int count = fill_stretch < Shape,
+              affine ? Beside::MomentsFromGrid : Beside::Nothing > (weights, group, particles.position, start);
+    for (int i = 0; i < count; i += lane_count) {
+      const std::int64_t p = start + i;
+      prefetch_records<4>(particles.velocity, p);
+      if constexpr (affine) prefetch_records<9>(particles.affine, p);
+      Record v[lane_count];
+      for (int lane = 0; lane < lane_count; ++lane) {
+        double* position = particles.position + 4 * (p + lane);
+        RecordPair both;  // velocity and acceleration
+        if (affine) {
+          RecordPair dx, dy, dz;
+          gather_slopes<Shape, Beside::MomentsFromGrid>(weights[i / lane_count], lane, tile, both, dx, dy, dz);
+          const Record X = first_of(dx), Y = first_of(dy), Z = first_of(dz);
+          const Record dX = second_of(dx), dY = second_of(dy), dZ = second_of(dz);
+          double* C = particles.affine + 9 * (p + lane);
+          const Record X_0 = load_three(C), Y_0 = load_three(C + 3), Z_0 = load_three(C + 6);
+          lost_affine += (X_0 * X_0 + Y_0 * Y_0 + Z_0 * Z_0 - X * X - Y * Y - Z * Z +
+                          (dX * dX + dY * dY + dZ * dZ) * time_step_squared) *
+                         position[3];
+          store_three(C, X);
+          store_three(C + 3, Y);
+          store_three(C + 6, Z);
+        } else {
+          both = gather_value<Shape>(weights[i / lane_count], lane, tile);
+        }
+        const Record velocity = first_of(both), acceleration = second_of(both);
+        const Record displacement = velocity * group.time_step;
+        if (particles.displacement) {
+          store_aligned(particles.displacement + 4 * (p + lane), displacement);
+        } else {
+          const Record moved = load_aligned<Record>(position) + displacement;
+          all_inside &= (moved >= low) & (moved <= high);
+          store_aligned(position, moved);
+        }
+        double* to = particles.velocity + 4 * (p + lane);
+        const Record old = load_aligned<Record>(to);
+        const Record increment = acceleration * group.time_step;
+        v[lane] = old + increment;
+        power += old * increment * position[3];
+        if (from_grid != 0) {
+          const Record flip = v[lane];
+          v[lane] = flip * kept + velocity * from_grid;
+          v[lane][3] = 1.0;
+          lost += (flip - v[lane]) * (flip + v[lane]) * position[3];
+        }
+        store_aligned(to, v[lane]);
       }
-      const Record velocity = first_of(both), acceleration = second_of(both);
-      const Record displacement = velocity * group.time_step;
-      if (particles.displacement) {
-        store_aligned(particles.displacement + 4 * (p + lane), displacement);
-      } else {
-        const Record moved = load_aligned<Record>(position) + displacement;
-        all_inside &= (moved >= low) & (moved <= high);
-        store_aligned(position, moved);
-      }
-      double* to = particles.velocity + 4 * (p + lane);
-      const Record old = load_aligned<Record>(to);
-      const Record increment = acceleration * group.time_step;
-      v[lane] = old + increment;
-      power += old * increment * position[3];
-      if (from_grid != 0) {
-        const Record flip = v[lane];
-        v[lane] = flip * kept + velocity * from_grid;
-        v[lane][3] = 1.0;
-        lost += (flip - v[lane]) * (flip + v[lane]) * position[3];
-      }
-      store_aligned(to, v[lane]);
+      transpose(v[0], v[1], v[2], v[3]);
+      speed_squared = max(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], speed_squared);
     }
-    transpose(v[0], v[1], v[2], v[3]);
-    speed_squared = max(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], speed_squared);
   }
   sums.outside = !all(all_inside);
   lost += lost_affine * (0.25 / (group.inverse_cell * group.inverse_cell));
