@@ -101,33 +101,72 @@ void book_departure(const Material& material, double cell_size, BodyState& body,
       mass / material.density * body.energy[p];
 }
 
-// New order of a body's particles: `source[i]` is the old place of the particle now at i; padding repeats the last one.
+// Room for n values, of which the old ones need not be kept. Capacity grows by a sixteenth, not to the double: these
+// arrays are most of the memory.
+template <class Array>
+void make_room(Array& array, std::size_t n) {
+  if (array.capacity() < n) {
+    Array().swap(array);
+    array.reserve(n + n / 16);
+  }
+  array.resize(n);
+}
+
+// New order of a body's particles: `source[i]` is the old place of the particle now at i; padding repeats the last one. The
+// scratch array holds one record a particle and stays, so that no memory is asked for in a running simulation.
 void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Workspace& workspace) {
   const std::int64_t padded = static_cast<std::int64_t>(source.size());
-  auto records = [&](AlignedVector<double>& array, int size) {
-    workspace.scratch.resize(static_cast<std::size_t>(size * padded));
-    double* to = workspace.scratch.data();
-    const double* from = array.data();
+  const std::size_t n = static_cast<std::size_t>(padded);
+  make_room(workspace.scratch, 4 * n);
+  double* const scratch = workspace.scratch.data();
+  // Takes `size` values of each particle to the scratch array, from the `first` of `stride` on.
+  const auto take = [&](const AlignedVector<double>& array, int stride, int first, int size) {
+    const double* const from = array.data() + first;
 #pragma omp parallel for num_threads(workspace.threads) schedule(static)
     for (std::int64_t i = 0; i < padded; ++i)
-      for (int c = 0; c < size; ++c) to[size * i + c] = from[size * static_cast<std::int64_t>(source[i]) + c];
-    array.swap(workspace.scratch);
+      for (int c = 0; c < size; ++c) scratch[size * i + c] = from[stride * static_cast<std::int64_t>(source[i]) + c];
   };
-  auto scalars = [&](AlignedVector<double>& array) {
-    workspace.scratch.resize(static_cast<std::size_t>(padded));
-    double* to = workspace.scratch.data();
-    const double* from = array.data();
+  const auto scalars = [&](AlignedVector<double>& array) {
+    take(array, 1, 0, 1);
+    make_room(array, n);
+    double* const to = array.data();
 #pragma omp parallel for num_threads(workspace.threads) schedule(static)
-    for (std::int64_t i = 0; i < padded; ++i) to[i] = from[source[i]];
-    array.swap(workspace.scratch);
+    for (std::int64_t i = 0; i < padded; ++i) to[i] = scratch[i];
   };
-  records(body.position, 4);
-  records(body.velocity, 4);
-  if (!body.affine.empty()) records(body.affine, affine_size);
+  const auto records = [&](AlignedVector<double>& array) {
+    take(array, 4, 0, 4);
+    make_room(array, 4 * n);
+    double* const to = array.data();
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+    for (std::int64_t i = 0; i < 4 * padded; ++i) to[i] = scratch[i];
+  };
+  records(body.position);
+  records(body.velocity);
+  if (!body.affine.empty()) {
+    // A vector at a time goes through the scratch array; room is made when the first one is out, so the others go with it.
+    AlignedVector<double> fresh;
+    AlignedVector<double>* to = &body.affine;
+    if (body.affine.capacity() < affine_size * n) {
+      make_room(fresh, affine_size * n);
+      to = &fresh;
+    } else if (body.affine.size() < affine_size * n) {
+      body.affine.resize(affine_size * n);
+    }
+    for (int vector = 0; vector < 3; ++vector) {
+      take(body.affine, affine_size, 3 * vector, 3);
+      double* const values = to->data();
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+      for (std::int64_t i = 0; i < padded; ++i)
+        for (int c = 0; c < 3; ++c) values[affine_size * i + 3 * vector + c] = scratch[3 * i + c];
+    }
+    if (to == &fresh) body.affine.swap(fresh);
+    body.affine.resize(affine_size * n);
+  }
   body.for_each_scalar(scalars);
-  AlignedVector<std::int32_t> number(static_cast<std::size_t>(padded));
-  for (std::int64_t i = 0; i < padded; ++i) number[i] = body.number[source[i]];
-  body.number.swap(number);
+  std::int32_t* const numbers = reinterpret_cast<std::int32_t*>(scratch);
+  for (std::int64_t i = 0; i < padded; ++i) numbers[i] = body.number[source[i]];
+  make_room(body.number, n);
+  std::copy(numbers, numbers + n, body.number.begin());
   body.padded = padded;
 }
 
