@@ -10,6 +10,8 @@ packages=(
   libboost-program-options-dev libtomlplusplus-dev libmuparser-dev    # driver
   nlohmann-json3-dev                                                  # driver, tests
   libgtest-dev                                                        # tests
+  valgrind                                                            # tests: counts of instructions
+  libbenchmark-dev                                                    # bench
   python3 python3-numpy python3-h5py python3-matplotlib               # tools/*.py
 )
 

@@ -1,0 +1,292 @@
+#!/usr/bin/env python3
+"""Measures the engine's speed on this machine and writes docs/performance.md, its data and its charts anew.
+
+  bench/measure.py [--build build/bench] [--work DIR] [--quick] [--draw-only]
+
+BUILD is a release build with OGIVE_BENCH=ON (cmake --preset bench && cmake --build --preset bench). Results go to
+docs/data/performance.json, charts to docs/images/performance_*.png, tables between the markers of docs/performance.md.
+--quick leaves out the whole run and the largest sizes; --draw-only draws what an earlier call measured. Each case is run
+three times and the best is kept; the machine's own limits are measured before and after, so that a disturbed measurement
+shows.
+"""
+
+import argparse
+import json
+import os
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+sys.path.insert(0, os.path.join(ROOT, "tools"))
+PLATE = os.path.join(ROOT, "examples", "scenes", "thick_plate", "scene.toml")
+BLOCK = os.path.join(ROOT, "bench", "block.toml")
+DATA = os.path.join(ROOT, "docs", "data", "performance.json")
+PAGE = os.path.join(ROOT, "docs", "performance.md")
+FLIP = ["numerics.shape_function=linear", "numerics.transfer=flip", "numerics.time_step_factor=0.4"]
+REPEATS = 3
+
+
+class Bench:
+    def __init__(self, build, work):
+        self.bin = os.path.join(build, "bin")
+        self.work = work
+
+    def limits(self):
+        out = subprocess.run([os.path.join(self.bin, "ogive_limits"), str(os.cpu_count())], check=True,
+                             capture_output=True, text=True).stdout
+        return json.loads(out)
+
+    def phases(self):
+        out = subprocess.run([os.path.join(self.bin, "ogive_bench"), "--benchmark_format=json",
+                              "--benchmark_min_time=0.1", "--benchmark_repetitions=3",
+                              "--benchmark_report_aggregates_only=false"],
+                             check=True, capture_output=True, text=True).stdout
+        best = {}
+        for entry in json.loads(out)["benchmarks"]:
+            if entry.get("run_type") != "iteration":
+                continue
+            ns = entry["ns"]
+            if entry["name"] not in best or ns < best[entry["name"]]["ns"]:
+                best[entry["name"]] = {"ns": ns, "bytes": entry["bytes"]}
+        return best
+
+    def run(self, scene, settings=(), threads=1, isa=None, repeats=REPEATS, until=None):
+        """Best of some runs: nanoseconds a particle-step and what summary.json tells."""
+        best = None
+        for _ in range(repeats):
+            command = [os.path.join(self.bin, "ogive"), "run", scene, "--output", os.path.join(self.work, "run"),
+                       "--overwrite", "--threads", str(threads)]
+            for setting in settings:
+                command += ["--set", setting]
+            if until:
+                command += ["--until", str(until)]
+            env = dict(os.environ, **({"OGIVE_ISA": isa} if isa else {}))
+            start = time.monotonic()
+            subprocess.run(command, check=True, capture_output=True, env=env)
+            elapsed = time.monotonic() - start
+            with open(os.path.join(self.work, "run", "summary.json"), encoding="utf-8") as file:
+                summary = json.load(file)
+            got = {"ns": 1e9 / summary["particle_steps_per_second"], "particles": summary["particles"],
+                   "steps": summary["steps"], "seconds": summary["wall_seconds"], "elapsed": elapsed,
+                   "bytes": summary["peak_memory_bytes"]}
+            if best is None or got["ns"] < best["ns"]:
+                best = got
+        return best
+
+
+def measure(bench, quick):
+    data = {"machine": machine(), "limits_before": bench.limits()}
+    say = lambda text: print(text, flush=True)
+    say("phases")
+    data["phases"] = bench.phases()
+    early = 0.022
+
+    say("settings")
+    settings = {
+        "trilinear, FLIP": FLIP,
+        "trilinear, affine FLIP": FLIP[:1] + FLIP[2:],
+        "trilinear, affine FLIP, stress last": FLIP[:1] + FLIP[2:] + ["numerics.update_order=stress_last"],
+        "B-spline, FLIP": ["numerics.transfer=flip"],
+        "B-spline, affine FLIP (the scene's)": [],
+        "B-spline, affine FLIP, stress last": ["numerics.update_order=stress_last"],
+    }
+    data["settings"] = {name: bench.run(PLATE, values, until=early) for name, values in settings.items()}
+    data["two_threads"] = {name: bench.run(PLATE, settings[name], threads=2, until=early)
+                           for name in ("trilinear, FLIP", "B-spline, affine FLIP (the scene's)")}
+
+    say("features")
+    one_field = ["contact.method=single_field"]
+    full = ["grid.faces.y_min=free", "grid.lower=[-100,-60,-120]"]
+    data["features"] = {
+        "as above, trilinear, FLIP": data["settings"]["trilinear, FLIP"],
+        "one velocity field (no contact)": bench.run(PLATE, FLIP + one_field, until=early),
+        "friction 0.1": bench.run(PLATE, FLIP + ["contact.friction=0.1"], until=early),
+        "first contact method": bench.run(PLATE, FLIP + ["contact.method=huang_first"], until=early),
+        "no heating": bench.run(PLATE, FLIP + ["materials.aluminium.johnson_cook.m=0"], until=early),
+        "full model, no symmetry": bench.run(PLATE, FLIP + full, until=early),
+    }
+
+    say("instruction sets")
+    data["isa"] = {isa: {name: bench.run(PLATE, settings[name], isa=isa, until=early)
+                         for name in ("trilinear, FLIP", "B-spline, affine FLIP (the scene's)")}
+                   for isa in ("x86-64-v4", "x86-64-v3", "x86-64-v2", "generic")}
+
+    say("growth")
+    data["growth"] = {}
+    for edge, until in ((22, 0.2), (46, 0.03), (100, 0.004), (126, 0.003)) + (() if quick else ((216, 0.0015),)):
+        data["growth"][str(edge**3)] = {
+            name: bench.run(BLOCK, [f"parameters.L={edge}"] + values, until=until, repeats=2)
+            for name, values in (("trilinear, FLIP", FLIP), ("B-spline, affine FLIP", []))}
+
+    say("empty space")
+    data["empty"] = {str(room): bench.run(BLOCK, ["parameters.L=60", f"parameters.room={room}"] + FLIP, until=0.01)
+                     for room in (1, 10)}
+
+    say("set-up and checkpoints")
+    start = time.monotonic()
+    mesh = os.path.join(ROOT, "examples", "scenes", "thick_plate", "rod.stl")
+    subprocess.run([os.path.join(bench.bin, "ogive"), "voxelise", mesh, "--spacing", "0.5", "-o",
+                    os.path.join(bench.work, "rod.csv")], check=True, capture_output=True)
+    data["voxelise_seconds"] = time.monotonic() - start
+    one_step = bench.run(BLOCK, ["parameters.L=126", "output.history_interval=1.0"] + FLIP, until=1e-9, repeats=2)
+    data["start_seconds"] = one_step["elapsed"]
+    many = bench.run(PLATE, ["output.checkpoint_steps=10"], until=early)
+    none = bench.run(PLATE, ["output.checkpoint_steps=1000000"], until=early)
+    written = many["steps"] // 10
+    seconds = (many["seconds"] - none["seconds"]) / written
+    data["checkpoint"] = {"seconds": seconds, "share_percent": 100 * seconds / (none["seconds"] / none["steps"] * 500)}
+    if not quick:
+        say("whole run")
+        whole = FLIP + ["contact.detection=shared_node"]
+        data["whole"] = {"trilinear, FLIP, 1 thread": bench.run(PLATE, whole, repeats=1),
+                         "trilinear, FLIP, 2 threads": bench.run(PLATE, whole, threads=2, repeats=1),
+                         "B-spline, affine FLIP, 1 thread": bench.run(PLATE, [], repeats=1)}
+    data["limits_after"] = bench.limits()
+    return data
+
+
+def machine():
+    name = platform.processor() or platform.machine()
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            text = file.read()
+        name = re.search(r"model name\s*: (.*)", text)[1]
+        name += ", family %s model %s" % tuple(re.search(rf"{key}\t+: (\d+)", text)[1] for key in ("cpu family", "model"))
+    except (OSError, TypeError):
+        pass
+    compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
+    return {"processor": name, "cores": os.cpu_count(), "compiler": compiler, "load": os.getloadavg()[0]}
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+def speed(entry):
+    return f"{1e3 / entry['ns']:.1f}"
+
+
+def tables(data):
+    limits = data["limits_before"], data["limits_after"]
+    both = lambda key, unit: " / ".join(f"{x[key] / unit:.1f}" for x in limits)
+    m = data["machine"]
+    out = {}
+    out["machine"] = (
+        f"{m['processor']}, {m['cores']} cores; {m['compiler']}; load of other programs before the start {m['load']:.1f}. Its "
+        f"own limits before and after: clock {both('clock_hz', 1e9)} GHz, fused multiply-adds {both('flops', 1e9)} Gflop/s "
+        f"a core, copying {both('copy_bytes_per_second', 1e9)} GB/s (one core), "
+        f"{both('copy_bytes_per_second_all', 1e9)} GB/s (all).")
+    out["settings"] = table(
+        ["settings", "ns a particle-step", "million a second", "two threads", "bytes a particle (process)"],
+        [[name, f"{e['ns']:.1f}", speed(e),
+          f"{e['ns'] / data['two_threads'][name]['ns']:.2f}x" if name in data["two_threads"] else "",
+          f"{e['bytes'] / e['particles']:.0f}"] for name, e in data["settings"].items()])
+    if "whole" in data:
+        out["whole"] = table(["whole run, V0 = 575 m/s", "steps", "seconds", "million a second"],
+                             [[n, e["steps"], f"{e['seconds']:.1f}", speed(e)] for n, e in data["whole"].items()])
+    base = data["settings"]["trilinear, FLIP"]["ns"]
+    out["features"] = table(["thick plate, trilinear FLIP", "ns", "difference"],
+                            [[n, f"{e['ns']:.1f}", f"{e['ns'] - base:+.1f}"] for n, e in data["features"].items()])
+    names = list(data["isa"]["x86-64-v4"])
+    out["isa"] = table(["instruction set"] + names,
+                       [[isa] + [f"{speed(e[n])} ({data['isa']['x86-64-v4'][n]['ns'] / e[n]['ns']:.2f})" for n in names]
+                        for isa, e in data["isa"].items()])
+    out["growth"] = table(["particles"] + ["ns, " + n for n in next(iter(data["growth"].values()))] + ["bytes a particle"],
+                          [[f"{int(n):,}"] + [f"{e['ns']:.1f}" for e in row.values()] +
+                           [" / ".join(f"{e['bytes'] / int(n):.0f}" for e in row.values())]
+                           for n, row in data["growth"].items()])
+    near, far = data["empty"]["1"], data["empty"]["10"]
+    out["other"] = "\n".join([
+        f"- Domain ten times larger in each direction: time {100 * (far['ns'] / near['ns'] - 1):+.1f} %, memory "
+        f"{100 * (far['bytes'] / near['bytes'] - 1):+.1f} %.",
+        f"- Voxelising the rod at 0.5 mm {data['voxelise_seconds']:.2f} s; starting, one step and ending of a run of two million "
+        f"particles, with a checkpoint and a particle file, {data['start_seconds']:.2f} s.",
+        f"- A checkpoint of the thick plate takes {data['checkpoint']['seconds']:.3f} s; at one in 500 steps "
+        f"{data['checkpoint']['share_percent']:.1f} % of the run."])
+    copy, hz = limits[0]["copy_bytes_per_second"], limits[0]["clock_hz"]
+    rows = []
+    for name, e in data["phases"].items():
+        if not name.endswith("/1M"):
+            continue
+        small = data["phases"][name[:-2] + "20k"]
+        rows.append([name[:-3], f"{small['ns']:.1f}", f"{small['ns'] * hz * 1e-9:.0f}", f"{e['ns']:.1f}", f"{e['bytes']:.0f}",
+                     f"{100 * e['bytes'] / e['ns'] * 1e9 / copy:.0f} %"])
+    out["phases"] = table(["phase", "ns, 20 thousand", "cycles", "ns, a million", "bytes", "of copying's rate"], rows)
+    return out
+
+
+def draw(data):
+    import plot_common
+    plt = plot_common.plt
+    images = os.path.join(ROOT, "docs", "images")
+    figure, axes = plt.subplots(figsize=(6, 3))
+    for name in next(iter(data["growth"].values())):
+        axes.semilogx([int(n) for n in data["growth"]], [1e3 / row[name]["ns"] for row in data["growth"].values()], "o-",
+                      label=name)
+    axes.set(xlabel="particles", ylabel="million particle-steps a second, one thread", ylim=(0, None))
+    axes.legend()
+    figure.savefig(os.path.join(images, "performance_growth.png"), dpi=110)
+    figure, axes = plt.subplots(figsize=(6, 3.2))
+    parts = [("map_momentum", "to the grid"), ("update_stress", "strain, stress, force"), ("update_particles", "to the particles")]
+    bars = ["linear/flip", "linear/affine", "bspline/flip", "bspline/affine"]
+    left = [0.0] * len(bars)
+    for phase, label in parts:
+        widths = []
+        for bar in bars:
+            shape, transfer = bar.split("/")
+            key = (f"update_stress/{shape}/johnson_cook_thermal+mie_gruneisen/1M" if phase == "update_stress"
+                   else f"{phase}/{shape}/{transfer}/1M")
+            widths.append(data["phases"][key]["ns"])
+        axes.barh(bars, widths, left=left, label=label)
+        left = [a + b for a, b in zip(left, widths)]
+    axes.invert_yaxis()
+    axes.set(xlabel="ns a particle-step, a million particles, one thread, elastic state")
+    axes.legend()
+    figure.savefig(os.path.join(images, "performance_phases.png"), dpi=110)
+
+
+def write_page(data):
+    with open(PAGE, encoding="utf-8") as file:
+        page = file.read()
+    for name, text in tables(data).items():
+        begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
+        page, count = re.subn(re.escape(begin) + ".*?" + re.escape(end), lambda _: f"{begin}\n{text}\n{end}", page, flags=re.S)
+        if count != 1:
+            sys.exit(f"measure.py: docs/performance.md has no place for {name}")
+    with open(PAGE, "w", encoding="utf-8") as file:
+        file.write(page)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default=os.path.join(ROOT, "build", "bench"))
+    parser.add_argument("--work", help="directory for the runs (default: a temporary one)")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--draw-only", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.draw_only:
+        with open(DATA, encoding="utf-8") as file:
+            data = json.load(file)
+    else:
+        work = arguments.work or tempfile.mkdtemp(prefix="ogive-bench-")
+        os.makedirs(work, exist_ok=True)
+        try:
+            data = measure(Bench(arguments.build, work), arguments.quick)
+        finally:
+            if not arguments.work:
+                shutil.rmtree(work)
+        with open(DATA, "w", encoding="utf-8") as file:
+            json.dump(data, file, indent=1)
+            file.write("\n")
+    draw(data)
+    write_page(data)
+
+
+if __name__ == "__main__":
+    main()
