@@ -21,6 +21,7 @@
 #include "audit.hpp"
 #include "error.hpp"
 #include "grid.hpp"
+#include "loads/loads.hpp"
 #include "model.hpp"
 #include "plan.hpp"
 #include "solids.hpp"
@@ -37,8 +38,12 @@ struct ogive_world {
   State state;
   Workspace workspace;
   bool has_grid = false;
+  bool advancing = false;  // inside ogive_world_advance: the callback may not step
+  ogive_log_callback log = nullptr;
+  void* log_user = nullptr;
   std::map<std::string, std::vector<std::uint8_t>> attachments;
   mutable std::string message;
+  mutable const char* fixed_message = nullptr;  // in place of message where there was no memory for it
 };
 
 namespace {
@@ -47,11 +52,26 @@ constexpr std::size_t longest_name = 63;
 
 // Messages must not need memory that there may not be.
 void set_message(const ogive_world* world, const char* text) noexcept {
+  world->fixed_message = nullptr;
   try {
     world->message = text;
   } catch (...) {
-    world->message.clear();
+    world->fixed_message = "memory could not be had, not even for the message";
   }
+}
+
+const char* message_of(const ogive_world* world) {
+  return world->fixed_message ? world->fixed_message : world->message.c_str();
+}
+
+void tell(const ogive_world* world, std::int32_t level, const char* text) {
+  if (world->log) world->log(world->log_user, level, text);
+}
+
+ogive_status fail(const ogive_world* world, ogive_status status, const char* text) noexcept {
+  set_message(world, text);
+  tell(world, OGIVE_LOG_ERROR, message_of(world));
+  return status;
 }
 
 // Runs work() and turns what it throws into a status.
@@ -62,20 +82,15 @@ ogive_status guarded(const ogive_world* world, Work&& work) noexcept {
     work();
     return OGIVE_OK;
   } catch (const Error& error) {
-    set_message(world, error.what());
-    return static_cast<ogive_status>(error.kind());
+    return fail(world, static_cast<ogive_status>(error.kind()), error.what());
   } catch (const std::bad_alloc&) {
-    set_message(world, "memory could not be had");
-    return OGIVE_ERROR_MEMORY;
+    return fail(world, OGIVE_ERROR_MEMORY, "memory could not be had");
   } catch (const std::length_error&) {
-    set_message(world, "memory could not be had: an array would be too long");
-    return OGIVE_ERROR_MEMORY;
+    return fail(world, OGIVE_ERROR_MEMORY, "memory could not be had: an array would be too long");
   } catch (const std::exception& error) {
-    set_message(world, error.what());
-    return OGIVE_ERROR_INTERNAL;
+    return fail(world, OGIVE_ERROR_INTERNAL, error.what());
   } catch (...) {
-    set_message(world, "unknown failure");
-    return OGIVE_ERROR_INTERNAL;
+    return fail(world, OGIVE_ERROR_INTERNAL, "unknown failure");
   }
 }
 
@@ -177,6 +192,23 @@ const BodyState& body_of(const ogive_world* world, ogive_body_id id) {
 
 void require_body_or_none(const ogive_world*, ogive_body_id id, const char* name) {
   if (id.index < -1) refuse(std::string(name) + ": must be a body's id or -1, got " + std::to_string(id.index));
+}
+
+std::string number_text(double x) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.9g", x);
+  return buffer;
+}
+
+// A line on what there is, and the plan's cautions.
+void tell_prepared(const ogive_world* world, const char* what, const std::string& plan) {
+  if (!world->log) return;
+  tell(world, OGIVE_LOG_INFO,
+       (std::string(what) + ": " + std::to_string(world->model.bodies.size()) + " bodies, " +
+        std::to_string(world->state.particle_count()) + " particles, stable time step " +
+        number_text(world->state.stable_time_step)).c_str());
+  for (std::size_t at = plan.find("caution: "); at != std::string::npos; at = plan.find("caution: ", at + 1))
+    tell(world, OGIVE_LOG_WARNING, plan.substr(at, plan.find('\n', at) - at).c_str());
 }
 
 // ------------------------------------------------------------------------------------------------------------- bodies
@@ -375,13 +407,14 @@ struct Field {
   bool settable;
 };
 const Field all_fields[] = {
-    {"position", 3, false},      {"velocity", 3, true},     {"mass", 1, false},        {"volume", 1, false},
+    {"position", 3, true},       {"velocity", 3, true},     {"mass", 1, false},        {"volume", 1, false},
     {"stress", 6, true},         {"pressure", 1, false},    {"von_mises", 1, false},   {"energy", 1, true},
     {"plastic_strain", 1, true}, {"temperature", 1, true},  {"failed", 1, false},      {"number", 1, false},
-    {"deformation_gradient", 9, false}, {"affine_velocity", 9, true},
+    {"deformation_gradient", 9, true}, {"affine_velocity", 9, true}, {"volume_ratio", 1, true}, {"force", 3, true},
 };
 
-bool has_field(const Model& model, int body, const Field& field) {
+bool has_field(const ogive_world* world, int body, const Field& field) {
+  const Model& model = world->model;
   const Material& material = model.material_of(body);
   const std::string name(field.name);
   if (name == "plastic_strain") return material.plastic();
@@ -389,16 +422,18 @@ bool has_field(const Model& model, int body, const Field& field) {
   if (name == "failed") return material.failure != Failure::None;
   if (name == "deformation_gradient") return material.hyperelastic();
   if (name == "affine_velocity") return model.numerics.affine();
+  if (name == "force") return !world->state.bodies[body].force.empty();
   return true;
 }
 
-const Field& field_named(const ogive_world* world, ogive_body_id body, const char* name) {
+const Field& field_named(const ogive_world* world, ogive_body_id body, const char* name, bool to_set = false) {
   body_of(world, body);
   require_pointer(name, "name");
   const Material& material = world->model.material_of(body.index);
   for (const Field& field : all_fields)
     if (std::strcmp(field.name, name) == 0) {
-      if (!has_field(world->model, body.index, field))
+      const bool can_come = to_set && std::strcmp(name, "force") == 0;
+      if (!can_come && !has_field(world, body.index, field))
         refuse("field \"" + std::string(name) + "\": this world does not keep it for a body of material \"" + material.name + "\"");
       return field;
     }
@@ -427,6 +462,60 @@ void in_order_of_number(const BodyState& body, Put&& put) {
     const std::int32_t n = body.number[p];
     if (n >= 0) put(rank.empty() ? n : rank[static_cast<std::size_t>(n)], p);
   }
+}
+
+// Values that a field may be set to.
+void check_values(const Model& model, const Field& field, const double* values, std::int64_t count) {
+  const std::string name(field.name);
+  const bool not_negative = name == "plastic_strain" || name == "temperature", positive = name == "volume_ratio";
+  for (std::int64_t i = 0; i < count; ++i) {
+    const bool outside = (not_negative && values[i] < 0) || (positive && values[i] <= 0);
+    if (!std::isfinite(values[i]) || outside)
+      refuse("values[" + std::to_string(i) + "]: must be finite" + (positive ? " and > 0" : not_negative ? " and >= 0" : "") +
+             ", got " + number_text(values[i]));
+    const int axis = static_cast<int>(i % 3);
+    if (name == "position" && (values[i] < model.grid.domain_min[axis] || values[i] > model.grid.domain_max[axis]))
+      refuse("values[" + std::to_string(i) + "]: must lie inside the domain, " + number_text(model.grid.domain_min[axis]) +
+             ".." + number_text(model.grid.domain_max[axis]) + ", got " + number_text(values[i]));
+  }
+  if (name == "deformation_gradient")
+    for (std::int64_t i = 0; i < count; i += 9) {
+      const double* f = values + i;
+      const double determinant = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
+                                 f[2] * (f[3] * f[7] - f[4] * f[6]);
+      if (!(determinant > 0))
+        refuse("values[" + std::to_string(i) + "..]: the determinant must be > 0, got " + number_text(determinant));
+    }
+}
+
+// Where the engine keeps a field; false if it is computed on demand.
+bool view_field(const BodyState& body, const std::string& name, ogive_field_view& view) {
+  const auto records = [&](const AlignedVector<double>& array, int components, int stride) {
+    view.stride = stride;
+    for (int c = 0; c < components; ++c) view.component[c] = array.data() + c;
+  };
+  const auto arrays = [&](const auto& list) {
+    view.stride = 1;
+    for (std::size_t c = 0; c < list.size(); ++c) view.component[c] = list[c].data();
+  };
+  if (name == "position") records(body.position, 3, 4);
+  else if (name == "velocity") records(body.velocity, 3, 4);
+  else if (name == "force") records(body.force, 3, 4);
+  else if (name == "plastic_strain") records(body.plastic_strain, 1, 1);
+  else if (name == "temperature") records(body.temperature, 1, 1);
+  else if (name == "volume_ratio") records(body.volume_ratio, 1, 1);
+  else if (name == "stress") arrays(body.stress);
+  else if (name == "deformation_gradient") arrays(body.deformation);
+  else if (name == "mass") {
+    view.stride = 4;
+    view.component[0] = body.position.data() + 3;
+  } else if (name == "affine_velocity") {
+    view.stride = affine_size;
+    for (int c = 0; c < 9; ++c) view.component[c] = body.affine.data() + 4 * (c % 3) + c / 3;
+  } else {
+    return false;
+  }
+  return true;
 }
 
 // The field of all particles, ordered by number.
@@ -459,6 +548,8 @@ void copy_field(const Model& model, int body_index, const BodyState& body, const
   else if (name == "failed")
     fill(1, [&](std::int64_t p, int) { return body.plastic_strain[p] >= material.failure_strain ? 1.0 : 0.0; });
   else if (name == "number") fill(1, [&](std::int64_t p, int) { return static_cast<double>(body.number[p]); });
+  else if (name == "volume_ratio") fill(1, [&](std::int64_t p, int) { return body.volume_ratio[p]; });
+  else if (name == "force") fill(3, [&](std::int64_t p, int c) { return body.force[4 * p + c]; });
   else if (name == "deformation_gradient") fill(9, [&](std::int64_t p, int c) { return body.deformation[c][p]; });
   else
     fill(9, [&](std::int64_t p, int c) { return body.affine[affine_size * p + 3 * (c % 3) + c / 3]; });
@@ -515,7 +606,6 @@ class CallbackReader : public Archive {
   const ogive_reader& reader_;
 };
 
-constexpr std::int32_t save_version = 1;
 constexpr std::int64_t largest_attachment = std::int64_t{1} << 31;
 
 void exchange_attachments(ogive_world* world, Archive& archive) {
@@ -555,6 +645,8 @@ const char* ogive_status_name(ogive_status status) {
   }
 }
 
+int32_t ogive_abi_version(void) { return OGIVE_ABI; }
+
 ogive_status ogive_world_create(ogive_world** world) {
   if (!world) return OGIVE_ERROR_ARGUMENT;
   *world = new (std::nothrow) ogive_world;
@@ -563,12 +655,20 @@ ogive_status ogive_world_create(ogive_world** world) {
 
 void ogive_world_destroy(ogive_world* world) { delete world; }
 
-const char* ogive_world_message(const ogive_world* world) { return world ? world->message.c_str() : ""; }
+const char* ogive_world_message(const ogive_world* world) { return world ? message_of(world) : ""; }
 
 ogive_status ogive_world_report(ogive_world* world, ogive_status status, const char* message) {
   if (!world) return OGIVE_ERROR_ARGUMENT;
+  if (status != OGIVE_OK) return fail(world, status, message ? message : "");
   set_message(world, message ? message : "");
   return status;
+}
+
+ogive_status ogive_world_set_log(ogive_world* world, ogive_log_callback callback, void* user) {
+  return guarded(world, [&] {
+    world->log = callback;
+    world->log_user = callback ? user : nullptr;
+  });
 }
 
 void ogive_grid_def_init(ogive_grid_def* def, size_t size) { initialise(def, size, ogive_grid_def{}); }
@@ -645,6 +745,97 @@ ogive_status ogive_clamp_add(ogive_world* world, const ogive_clamp_def* def) {
     clamp.axes = full.axes;
     world->model.validate_clamp(clamp);
     world->model.clamps.push_back(clamp);
+  });
+}
+
+void ogive_load_def_init(ogive_load_def* def, size_t size) {
+  ogive_load_def defaults{};
+  defaults.region = OGIVE_REGION_EVERYWHERE;
+  defaults.body.index = -1;
+  defaults.axes = 7;
+  initialise(def, size, defaults);
+}
+
+static Vector3 load_value(const double* value) {
+  for (int c = 0; c < 3; ++c)
+    if (!std::isfinite(value[c])) refuse("load value[" + std::to_string(c) + "]: must be finite, got " + std::to_string(value[c]));
+  return {value[0], value[1], value[2]};
+}
+
+ogive_status ogive_load_add(ogive_world* world, const ogive_load_def* def, ogive_load_id* id) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_load_add");
+    const ogive_load_def full = complete(def, "def", ogive_load_def_init);
+    Load load;
+    load.kind = static_cast<LoadKind>(full.kind);
+    load.region = static_cast<Region>(full.region);
+    load.a = vector_of(full.a);
+    load.b = vector_of(full.b);
+    load.radius = full.radius;
+    load.body = full.body.index;
+    load.axes = full.axes;
+    load.area = full.area;
+    require_body_or_none(world, full.body, "load body");
+    world->model.validate_load(load);
+    LoadState present;
+    present.value = load_value(full.value);
+    // Both or neither, should memory fail.
+    world->model.loads.reserve(world->model.loads.size() + 1);
+    world->state.loads.reserve(world->state.loads.size() + 1);
+    world->model.loads.push_back(load);
+    world->state.loads.push_back(present);
+    if (id) id->index = static_cast<std::int32_t>(world->model.loads.size()) - 1;
+  });
+}
+
+static LoadState& load_of(const ogive_world* world, ogive_load_id id) {
+  auto& loads = const_cast<ogive_world*>(world)->state.loads;
+  if (id.index < 0 || id.index >= static_cast<std::int32_t>(loads.size()))
+    refuse("load: must be 0.." + std::to_string(static_cast<int>(loads.size()) - 1) + ", got " + std::to_string(id.index));
+  return loads[static_cast<std::size_t>(id.index)];
+}
+
+ogive_status ogive_load_set(ogive_world* world, ogive_load_id load, const double* value) {
+  return guarded(world, [&] {
+    LoadState& present = load_of(world, load);
+    require_pointer(value, "value");
+    present.value = load_value(value);
+  });
+}
+
+ogive_status ogive_load_result_get(const ogive_world* world, ogive_load_id load, ogive_load_result* result) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_load_result_get");
+    const LoadState& present = load_of(world, load);
+    ogive_load_result full{};
+    for (int c = 0; c < 3; ++c) {
+      full.value[c] = present.value[c];
+      full.force[c] = present.force[c];
+      full.impulse[c] = present.impulse[c];
+    }
+    full.work = present.work;
+    deliver(full, result, "result");
+  });
+}
+
+ogive_status ogive_pair_result_get(const ogive_world* world, ogive_body_id a, ogive_body_id b, ogive_pair_result* result) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_pair_result_get");
+    body_of(world, a);
+    body_of(world, b);
+    if (a.index == b.index) refuse("pair: must be two bodies, got body " + std::to_string(a.index) + " twice");
+    ogive_pair_result full{};
+    for (const PairTotals& pair : world->state.pairs) {
+      if (pair.a != std::min(a.index, b.index) || pair.b != std::max(a.index, b.index)) continue;
+      const double sign = pair.a == a.index ? 1 : -1;
+      for (int c = 0; c < 3; ++c) {
+        full.force[c] = sign * pair.force[c];
+        full.impulse[c] = sign * pair.impulse[c];
+      }
+      full.friction_dissipation = pair.friction_dissipation;
+      full.contact_work = pair.contact_work;
+    }
+    deliver(full, result, "result");
   });
 }
 
@@ -831,10 +1022,16 @@ ogive_status ogive_world_prepare(ogive_world* world) {
     if (!world->has_grid) throw Error(ErrorKind::State, "ogive_world_prepare: the grid must be set (ogive_world_set_grid)");
     world->model.validate_all();
     refuse_overlap(world->model, world->state);
+    select_loaded_particles(world->model, world->state);
+    for (std::size_t i = 0; i < world->model.loads.size(); ++i)
+      if (world->model.loads[i].kind == LoadKind::Traction && !(world->state.loads[i].mass > 0))
+        refuse("load " + std::to_string(i) + ": a traction must meet particles of its body, and none lies in the region");
     prepare_state(world->model, world->state, world->workspace);
     world->state.ledger.initial_total = total_energy(world->model, world->state);
     check_stop(world->model, world->state);
+    const std::string plan = world->log ? describe_plan(world->model, world->state, world->workspace) : "";
     world->stage = Stage::Ready;
+    tell_prepared(world, "prepared", plan);
   });
 }
 
@@ -853,23 +1050,54 @@ ogive_status ogive_world_stable_time_step(const ogive_world* world, double* dt) 
   });
 }
 
+static void tell_events(ogive_world* world, const std::vector<BodyTotals>& before, std::int32_t stop_before) {
+  for (std::size_t b = 0; b < before.size(); ++b) {
+    const BodyTotals& now = world->state.bodies[b].totals;
+    const auto first = [&](std::int32_t level, const char* what) {
+      tell(world, level, ("body \"" + world->model.bodies[b].name + "\": " + what + " at time " +
+                          std::to_string(world->state.time) + ", step " + std::to_string(world->state.steps)).c_str());
+    };
+    if (before[b].failed_particles == 0 && now.failed_particles > 0) first(OGIVE_LOG_INFO, "first failed particle");
+    if (before[b].left_particles == 0 && now.left_particles > 0)
+      first(OGIVE_LOG_WARNING, "first particle that leaves the domain");
+  }
+  static const char* const reasons[] = {"", "settled", "stopped", "out"};
+  if (stop_before == 0 && world->state.stop.reason != 0)
+    tell(world, OGIVE_LOG_INFO, (std::string("stop condition met: ") + reasons[world->state.stop.reason]).c_str());
+}
+
 static void step_or_break(ogive_world* world, double dt) {
+  std::vector<BodyTotals> before;
+  if (world->log)
+    for (const BodyState& body : world->state.bodies) before.push_back(body.totals);
+  const std::int32_t stop_before = world->state.stop.reason;
   try {
+    world->workspace.changing = false;
     advance_one_step(world->model, world->state, world->workspace, dt);
     // The stop condition looks at every tenth step: one pass over its body costs next to nothing then.
     if (world->state.steps % 10 == 0) check_stop(world->model, world->state);
+  } catch (const std::bad_alloc&) {
+    if (world->workspace.changing) world->stage = Stage::Broken;
+    throw;
   } catch (...) {
     world->stage = Stage::Broken;
     throw;
   }
+  if (world->log) tell_events(world, before, stop_before);
+}
+
+static void require_not_advancing(const ogive_world* world, const char* call) {
+  if (world->advancing)
+    throw Error(ErrorKind::State, std::string(call) + ": not allowed in a callback of ogive_world_advance");
 }
 
 ogive_status ogive_world_step(ogive_world* world, double dt) {
   return guarded(world, [&] {
     require_stage(world, Stage::Ready, "ogive_world_step");
+    require_not_advancing(world, "ogive_world_step");
     const double stable = world->state.stable_time_step;
     if (!(dt >= 0 && dt <= stable * (1 + 1e-12)))
-      refuse("dt: must be 0..stable time step = " + std::to_string(stable) + ", got " + std::to_string(dt));
+      refuse("dt: must be 0..stable time step = " + number_text(stable) + ", got " + number_text(dt));
     if (world->state.particle_count() == 0) throw Error(ErrorKind::State, "ogive_world_step: no particle is left");
     step_or_break(world, dt > 0 ? dt : stable);
   });
@@ -879,9 +1107,10 @@ ogive_status ogive_world_advance(ogive_world* world, double time, int64_t max_st
                                  void* user) {
   return guarded(world, [&] {
     require_stage(world, Stage::Ready, "ogive_world_advance");
+    require_not_advancing(world, "ogive_world_advance");
     if (!(time >= world->state.time && std::isfinite(time)))
-      refuse("time: must be finite and at least the present time " + std::to_string(world->state.time) + ", got " +
-             std::to_string(time));
+      refuse("time: must be finite and at least the present time " + number_text(world->state.time) + ", got " +
+             number_text(time));
     if (max_steps < 0) refuse("max_steps: must be >= 0, got " + std::to_string(max_steps));
     for (std::int64_t n = 0; (max_steps == 0 || n < max_steps) && world->state.time < time; ++n) {
       if (world->state.stop.reason != 0 || world->state.particle_count() == 0) break;
@@ -889,7 +1118,11 @@ ogive_status ogive_world_advance(ogive_world* world, double time, int64_t max_st
       const bool last = world->state.stable_time_step >= left;
       step_or_break(world, last ? left : world->state.stable_time_step);
       if (last) world->state.time = time;
-      if (callback && callback(world, user) != 0) break;
+      if (!callback) continue;
+      world->advancing = true;
+      const bool enough = callback(world, user) != 0;
+      world->advancing = false;
+      if (enough) break;
     }
   });
 }
@@ -1012,14 +1245,14 @@ int32_t ogive_field_count(const ogive_world* world, ogive_body_id body) {
   if (!ogive_body_name(world, body)) return 0;
   std::int32_t count = 0;
   for (const Field& field : all_fields)
-    if (has_field(world->model, body.index, field)) ++count;
+    if (has_field(world, body.index, field)) ++count;
   return count;
 }
 
 const char* ogive_field_name(const ogive_world* world, ogive_body_id body, int32_t index, int32_t* components) {
   if (!ogive_body_name(world, body) || index < 0) return nullptr;
   for (const Field& field : all_fields)
-    if (has_field(world->model, body.index, field) && index-- == 0) {
+    if (has_field(world, body.index, field) && index-- == 0) {
       if (components) *components = field.components;
       return field.name;
     }
@@ -1038,23 +1271,34 @@ ogive_status ogive_field_get(const ogive_world* world, ogive_body_id id, const c
   });
 }
 
+ogive_status ogive_field_view_get(const ogive_world* world, ogive_body_id id, const char* name, ogive_field_view* view) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_field_view_get");
+    const Field& field = field_named(world, id, name);
+    const BodyState& body = body_of(world, id);
+    ogive_field_view full{};
+    if (!view_field(body, field.name, full))
+      refuse("field \"" + std::string(name) + "\": is computed on demand and cannot be viewed; use ogive_field_get");
+    full.components = field.components;
+    full.places = body.padded;
+    full.number = body.number.data();
+    deliver(full, view, "view");
+  });
+}
+
 ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* name, const double* values,
                              int64_t count) {
   return guarded(world, [&] {
     require_prepared(world, "ogive_field_set");
-    const Field& field = field_named(world, id, name);
+    const Field& field = field_named(world, id, name, true);
     if (!field.settable) refuse("field \"" + std::string(name) + "\": cannot be set");
     BodyState& body = const_cast<BodyState&>(body_of(world, id));
     check_count(body, field, count);
     if (count > 0) require_pointer(values, "values");
     const Material& material = world->model.material_of(id.index);
     const std::string field_name(field.name);
-    for (std::int64_t i = 0; i < count; ++i) {
-      const bool negative = values[i] < 0 && (field_name == "plastic_strain" || field_name == "temperature");
-      if (!std::isfinite(values[i]) || negative)
-        refuse("values[" + std::to_string(i) + "]: must be finite" + (negative ? " and >= 0" : "") + ", got " +
-               std::to_string(values[i]));
-    }
+    check_values(world->model, field, values, count);
+    if (field_name == "force" && body.force.empty()) body.force.assign(4 * static_cast<std::size_t>(body.padded), 0.0);
     double fastest = 0;
     in_order_of_number(body, [&](std::int64_t rank, std::int64_t p) {
       const double* v = values + rank * field.components;
@@ -1065,6 +1309,14 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
         for (int c = 0; c < 9; ++c) body.affine[affine_size * p + 3 * (c % 3) + c / 3] = v[c];
       } else if (field_name == "stress") {
         for (int c = 0; c < 6; ++c) body.stress[c][p] = v[c];
+      } else if (field_name == "position") {
+        for (int c = 0; c < 3; ++c) body.position[4 * p + c] = v[c];
+      } else if (field_name == "force") {
+        for (int c = 0; c < 3; ++c) body.force[4 * p + c] = v[c];
+      } else if (field_name == "deformation_gradient") {
+        for (int c = 0; c < 9; ++c) body.deformation[c][p] = v[c];
+      } else if (field_name == "volume_ratio") {
+        body.volume_ratio[p] = *v;
       } else if (field_name == "energy") {
         body.energy[p] = *v * material.density / body.position[4 * p + 3];
       } else {
@@ -1081,6 +1333,7 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
         body.yield_stress[p] = yield;
       }
     });
+    if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
     if (field_name == "velocity") {
       // The next step must be safe for the new speed as well.
       const double dt = world->state.stable_time_step;
@@ -1126,8 +1379,7 @@ ogive_status ogive_world_save(const ogive_world* world, const ogive_writer* writ
     // exchange() both reads and writes; a writing archive changes nothing.
     ogive_world* self = const_cast<ogive_world*>(world);
     CallbackWriter archive(*writer);
-    std::int32_t version = save_version;
-    archive.value("version", version);
+    archive.exchange_version();
     self->model.exchange(archive);
     self->state.exchange(self->model, archive);
     exchange_attachments(self, archive);
@@ -1136,24 +1388,25 @@ ogive_status ogive_world_save(const ogive_world* world, const ogive_writer* writ
 
 ogive_status ogive_world_load(ogive_world* world, const ogive_reader* reader) {
   return guarded(world, [&] {
-    if (world->stage != Stage::Building || world->has_grid || !world->model.materials.empty())
+    require_not_advancing(world, "ogive_world_load");
+    if (world->stage != Stage::Building || world->has_grid || !world->model.materials.empty() || !world->model.loads.empty() ||
+        !world->model.clamps.empty())
       throw Error(ErrorKind::State, "ogive_world_load: the world must be fresh from ogive_world_create");
     require_pointer(reader, "reader");
     if (!reader->find || !reader->get) refuse("reader.find and reader.get: must not be NULL");
     ogive_world fresh;
     fresh.workspace.threads = world->workspace.threads;
     CallbackReader archive(*reader);
-    std::int32_t version = 0;
-    archive.value("version", version);
-    if (version < 1 || version > save_version)
-      throw Error(ErrorKind::Format, "version: this library reads 1.." + std::to_string(save_version) + ", found " +
-                                         std::to_string(version));
+    archive.exchange_version();
     fresh.model.exchange(archive);
     fresh.state.exchange(fresh.model, archive);
     exchange_attachments(&fresh, archive);
     prepare_state(fresh.model, fresh.state, fresh.workspace);
     fresh.has_grid = true;
     fresh.stage = Stage::Ready;
+    fresh.log = world->log;
+    fresh.log_user = world->log_user;
     std::swap(*world, fresh);
+    tell_prepared(world, "loaded", "");
   });
 }

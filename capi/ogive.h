@@ -9,6 +9,8 @@
  *   ogive_material_add          materials
  *   ogive_body_add_*            bodies, each of one material
  *   ogive_contact_set_pair      friction and normal of one pair                (optional)
+ *   ogive_clamp_add             what is held                                   (optional)
+ *   ogive_load_add              accelerations, tractions, prescribed velocities (optional)
  *   ogive_world_prepare         checks the whole model once and freezes it
  *   ogive_world_step / ogive_world_advance
  *
@@ -16,11 +18,12 @@
  *            m/s, energy in mJ, specific heat in J/(kg K). Each field names its dimension in [brackets]:
  *            L length, T time, M mass, K temperature, - none.
  * Structs    every definition struct starts with struct_size. Fill it by its *_init function, which takes sizeof of the
- *            struct as the caller was compiled, then change what differs from the defaults. Fields are only ever
- *            appended.
+ *            struct as the caller was compiled, then change what differs from the defaults. A result struct needs its
+ *            struct_size set before the call. Fields are only ever appended; those named reserved are 0 and not used.
  * Errors     every function returns an ogive_status; OGIVE_OK is 0. Otherwise nothing was changed and
  *            ogive_world_message names the field, the value and what was expected. The library never prints, exits,
- *            raises a signal or lets an exception out.
+ *            raises a signal or lets an exception out. (The OpenMP run time is not under its control: it ends the process
+ *            where the system refuses it threads. One thread needs none.)
  * Threads    one caller per world at a time; different worlds may be used from different threads at once.
  * Ownership  the library copies everything it is given. Pointers that it returns say how long they live.
  * Text       UTF-8, zero-terminated.
@@ -42,8 +45,11 @@ extern "C" {
 #endif
 
 #define OGIVE_VERSION_MAJOR 0
-#define OGIVE_VERSION_MINOR 1
+#define OGIVE_VERSION_MINOR 2
 #define OGIVE_VERSION_PATCH 0
+/* Grows by one whenever functions, fields or choices are appended; nothing is ever removed or given another meaning while the
+ * major version stays. Version 0.1.0 had 1. */
+#define OGIVE_ABI 2
 
 /* ------------------------------------------------------------------------------------------------ status, ids, names */
 
@@ -52,7 +58,8 @@ enum {
   OGIVE_OK = 0,
   OGIVE_ERROR_ARGUMENT = 1,      /* a value outside its range, a null pointer, a wrong struct_size, an unknown name or id */
   OGIVE_ERROR_STATE = 2,         /* a call in the wrong order (for example a step before ogive_world_prepare) */
-  OGIVE_ERROR_MEMORY = 3,        /* memory could not be had; the world is as it was before the call */
+  OGIVE_ERROR_MEMORY = 3,        /* memory could not be had; the world is as it was before the call. Only a step that runs
+                                    out of memory half-way leaves a world that can be looked at and saved, not advanced */
   OGIVE_ERROR_NUMERICAL = 4,     /* the run broke down: NaN, inverted volume, runaway particle, collapsed time step */
   OGIVE_ERROR_FILE = 5,          /* a file cannot be read or written */
   OGIVE_ERROR_FORMAT = 6,        /* a file is damaged, foreign or of an unknown version */
@@ -62,9 +69,13 @@ enum {
 typedef struct ogive_world ogive_world; /* opaque */
 typedef struct ogive_material_id { int32_t index; } ogive_material_id; /* 0-based; -1 is none */
 typedef struct ogive_body_id { int32_t index; } ogive_body_id;         /* 0-based; -1 is none */
+typedef struct ogive_load_id { int32_t index; } ogive_load_id;         /* 0-based; -1 is none */
 
-/* "0.1.0"; lives for ever. */
+/* Such as "0.2.0"; lives for ever. */
 OGIVE_API const char* ogive_version(void);
+/* OGIVE_ABI of the library. A program runs with every library of the same soname whose number is not below the
+ * OGIVE_ABI that it was compiled with. */
+OGIVE_API int32_t ogive_abi_version(void);
 /* A short English name of a status; lives for ever. */
 OGIVE_API const char* ogive_status_name(ogive_status status);
 
@@ -78,6 +89,18 @@ OGIVE_API void ogive_world_destroy(ogive_world* world);
 OGIVE_API const char* ogive_world_message(const ogive_world* world);
 /* Sets the message of the world (NULL: "") and returns status; for companion libraries and hosts. */
 OGIVE_API ogive_status ogive_world_report(ogive_world* world, ogive_status status, const char* message);
+
+/* What a world tells while it works, beside its statuses. */
+enum {
+  OGIVE_LOG_INFO = 1,    /* prepared, loaded, a stop condition met, the first failed particle of a body */
+  OGIVE_LOG_WARNING = 2, /* cautions of the plan; the first particle of a body that leaves the domain */
+  OGIVE_LOG_ERROR = 3    /* the message of each call that fails */
+};
+/* One line without its end; text lives during the call. It may query the world, and must not change or destroy it. Called
+ * on the thread of the caller. */
+typedef void (*ogive_log_callback)(void* user, int32_t level, const char* text);
+/* At any time; NULL: silence, the default. It is no part of what is saved. */
+OGIVE_API ogive_status ogive_world_set_log(ogive_world* world, ogive_log_callback callback, void* user);
 
 /* Boundary of a domain face. */
 enum {
@@ -143,7 +166,8 @@ OGIVE_API ogive_status ogive_world_set_threads(ogive_world* world, int32_t threa
 /* A part of space whose grid nodes are held at rest (a clamp). */
 enum {
   OGIVE_REGION_BOX = 0,             /* point a .. point b, a <= b */
-  OGIVE_REGION_OUTSIDE_CYLINDER = 1 /* farther than radius from the line through a along direction b */
+  OGIVE_REGION_OUTSIDE_CYLINDER = 1, /* farther than radius from the line through a along direction b */
+  OGIVE_REGION_EVERYWHERE = 2        /* a, b and radius are not used */
 };
 typedef struct ogive_clamp_def {
   uint32_t struct_size;
@@ -156,6 +180,34 @@ typedef struct ogive_clamp_def {
 } ogive_clamp_def;
 OGIVE_API void ogive_clamp_def_init(ogive_clamp_def* def, size_t size);
 OGIVE_API ogive_status ogive_clamp_add(ogive_world* world, const ogive_clamp_def* def);
+
+/* Loads beside gravity: what the host applies. */
+enum {
+  OGIVE_LOAD_ACCELERATION = 0, /* force per mass [L/T2] on the particles that lay in the region when the world was prepared */
+  OGIVE_LOAD_TRACTION = 1,     /* force per area [M/(L T2)] on a surface of the size `area`: value x area is shared by mass
+                                  among the particles of the body that lay in the region when the world was prepared, best
+                                  its outermost layer. It keeps its direction (a dead load) */
+  OGIVE_LOAD_VELOCITY = 2      /* velocity [L/T] of the body's grid nodes in the region, which stays where it is */
+};
+typedef struct ogive_load_def {
+  uint32_t struct_size;
+  int32_t kind;         /* OGIVE_LOAD_*. Default acceleration */
+  int32_t region;       /* OGIVE_REGION_*. Default everywhere */
+  ogive_body_id body;   /* the body that is loaded; index -1: all, not with traction. Default all */
+  double a[3];          /* [L] as in ogive_clamp_def */
+  double b[3];          /* [L] for a box, [-] for a direction */
+  double radius;        /* [L] > 0 for a cylinder */
+  double value[3];      /* as the kind says, finite. Default 0 */
+  double area;          /* [L2] > 0 with traction: the loaded surface before it deforms, as modelled (a half model: half) */
+  int32_t axes;         /* with velocity: bit 0 x, bit 1 y, bit 2 z: components that are prescribed. Default 7 */
+  int32_t reserved0;
+} ogive_load_def;
+OGIVE_API void ogive_load_def_init(ogive_load_def* def, size_t size);
+/* Before ogive_world_prepare, which refuses a traction that meets no particle and more than 31 accelerations and tractions on
+ * a body. id may be NULL. */
+OGIVE_API ogive_status ogive_load_add(ogive_world* world, const ogive_load_def* def, ogive_load_id* id);
+/* Another value[3] from the next step on; at any time, also from a step callback. Loads travel in every save. */
+OGIVE_API ogive_status ogive_load_set(ogive_world* world, ogive_load_id load, const double* value);
 
 /* --------------------------------------------------------------------------------------------------------- materials */
 
@@ -333,11 +385,12 @@ OGIVE_API ogive_status ogive_world_plan(const ogive_world* world, char* text, si
 /* Largest stable time step now, Eq. (35) with the fastest wave and particle [T]. */
 OGIVE_API ogive_status ogive_world_stable_time_step(const ogive_world* world, double* dt);
 
-/* One step. dt = 0: the stable time step; otherwise 0 < dt <= stable time step. */
+/* One step. dt = 0: the stable time step; otherwise the host's own, 0 < dt <= stable time step. For a host whose step is
+ * longer ogive_world_advance takes as many as are needed. */
 OGIVE_API ogive_status ogive_world_step(ogive_world* world, double dt);
 
 /* Called after each step; a value other than 0 makes ogive_world_advance return OGIVE_OK at once. It may query the
- * world and save it, and must not step, load or destroy it. */
+ * world, save it and set loads and fields; stepping or loading it is OGIVE_ERROR_STATE, and it must not be destroyed. */
 typedef int32_t (*ogive_step_callback)(ogive_world* world, void* user);
 /* Steps until `time` is reached exactly (the last step is shortened), a stop condition holds, max_steps (> 0; 0: no
  * limit) steps are done or the callback asks for a stop. Stop conditions end it at once if they already hold. */
@@ -375,7 +428,7 @@ typedef struct ogive_ledger {
   double momentum[3];          /* [M L/T] in the domain */
   double left_domain_momentum[3];
   double boundary_impulse[3];  /* [M L/T] given to the material by faces and clamps */
-  double external_impulse[3];  /* by gravity */
+  double external_impulse[3];  /* by gravity, loads and forces of the host */
   double kinetic;              /* [M L2/T2] with that of the particles' affine velocities */
   double internal;             /* elastic + plastic + thermal */
   double plastic_dissipation;  /* plastic work done so far; part of internal */
@@ -387,7 +440,7 @@ typedef struct ogive_ledger {
                                   below the grid's resolution. 0 to round-off with plain FLIP */
   double contact_work;         /* kinetic energy of the grid taken (< 0) by the normal contact forces */
   double boundary_work;        /* likewise by faces and clamps */
-  double external_work;        /* by gravity */
+  double external_work;        /* by gravity, loads and forces of the host */
   double initial_total;
   double total;
   double residual;
@@ -427,12 +480,36 @@ typedef struct ogive_body_result {
 } ogive_body_result;
 OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id body, ogive_body_result* result);
 
+typedef struct ogive_load_result {
+  uint32_t struct_size;
+  uint32_t reserved0;
+  double value[3];   /* as it is now */
+  double force[3];   /* [M L/T2] of the load on the material in the last step: with velocity, what holds it */
+  double impulse[3]; /* [M L/T] so far */
+  double work;       /* [M L2/T2] so far */
+} ogive_load_result;
+/* After ogive_world_prepare. */
+OGIVE_API ogive_status ogive_load_result_get(const ogive_world* world, ogive_load_id load, ogive_load_result* result);
+
+typedef struct ogive_pair_result {
+  uint32_t struct_size;
+  uint32_t reserved0;
+  double force[3];             /* [M L/T2] of b on a in the last step */
+  double impulse[3];           /* [M L/T] of b on a so far */
+  double friction_dissipation; /* [M L2/T2] so far, as in ogive_ledger */
+  double contact_work;         /* [M L2/T2] so far, as in ogive_ledger */
+} ogive_pair_result;
+/* Contact between two bodies, in either order: all zero until they touch. With the single-field method there is none. */
+OGIVE_API ogive_status ogive_pair_result_get(const ogive_world* world, ogive_body_id a, ogive_body_id b,
+                                             ogive_pair_result* result);
+
 /* Particle fields by name. Values are ordered by particle number (the order in which the body's particles were given,
  * those cut off at symmetry planes or removed left out), components of a particle together. All are double.
  *   position 3, velocity 3, mass 1, volume 1 (current), stress 6 (xx yy zz yz xz xy, tension positive),
  *   pressure 1, von_mises 1, energy 1 (internal, per particle), plastic_strain 1, temperature 1, failed 1 (0 or 1),
  *   number 1 (0-based particle number), deformation_gradient 9 (row by row), affine_velocity 9 (dv_i/dx_j of the particle's
- *   own velocity field, row by row; its kinetic energy is mass h^2/8 times the sum of the squares)
+ *   own velocity field, row by row; its kinetic energy is mass h^2/8 times the sum of the squares),
+ *   volume_ratio 1 (current by initial volume), force 3 [M L/T2] (the host's on each particle, once it was set)
  * A body has only the fields that its material and the transfer need: asking for another is OGIVE_ERROR_ARGUMENT. */
 OGIVE_API int32_t ogive_field_count(const ogive_world* world, ogive_body_id body);
 /* Name (lives as long as the world) and components of field `index`, NULL if out of range. */
@@ -441,10 +518,27 @@ OGIVE_API const char* ogive_field_name(const ogive_world* world, ogive_body_id b
  * which must be particles * components. */
 OGIVE_API ogive_status ogive_field_get(const ogive_world* world, ogive_body_id body, const char* name, double* values,
                                        int64_t count);
-/* Sets velocity, affine_velocity, stress, energy, plastic_strain or temperature in the same layout. Setting one leaves the
- * others as they are: who sets velocity may want to set affine_velocity too. */
+/* Sets position (inside the domain), velocity, affine_velocity, stress, energy, plastic_strain (>= 0), temperature (>= 0),
+ * volume_ratio (> 0), deformation_gradient (determinant > 0) or force in the same layout; all values finite. Setting one leaves
+ * the others as they are: who sets velocity may want to set affine_velocity too. A force acts in every step until it is set
+ * anew; its impulse and work are part of the ledger's external ones. */
 OGIVE_API ogive_status ogive_field_set(ogive_world* world, ogive_body_id body, const char* name, const double* values,
                                        int64_t count);
+
+/* A field where the engine keeps it, without a copy. Particles are in the engine's order, some places being padding. */
+typedef struct ogive_field_view {
+  uint32_t struct_size;
+  int32_t components;
+  int64_t places;              /* particles and padding */
+  int64_t stride;              /* doubles from one place to the next */
+  const double* component[9];  /* value c of place i: component[c][i * stride]; NULL beyond `components` */
+  const int32_t* number;       /* particle number of each place, -1: padding, whose values mean nothing */
+} ogive_field_view;
+/* For position, velocity, mass, stress, plastic_strain, temperature, volume_ratio, deformation_gradient, affine_velocity and
+ * force; the other fields are computed when they are asked for, so that viewing them is OGIVE_ERROR_ARGUMENT. The pointers live
+ * until the world is stepped, advanced, loaded, destroyed or one of its fields is set. struct_size must be set by the caller. */
+OGIVE_API ogive_status ogive_field_view_get(const ogive_world* world, ogive_body_id body, const char* name,
+                                            ogive_field_view* view);
 
 /* ------------------------------------------------------------------------------------------------- save and load a world */
 
@@ -489,6 +583,10 @@ OGIVE_API ogive_status ogive_checkpoint_read(ogive_world* world, const char* pat
 OGIVE_API ogive_status ogive_file_verify(const char* path, char* text, size_t capacity, size_t* needed);
 /* What the file is and holds: lines of text. */
 OGIVE_API ogive_status ogive_file_info(const char* path, char* text, size_t capacity, size_t* needed);
+/* ogive_body_add_particles from a text file of lines x,y,z,volume; empty lines, lines that begin with # and one heading before
+ * the first numbers are skipped. OGIVE_ERROR_FILE: it cannot be read; OGIVE_ERROR_FORMAT: the message names the line. */
+OGIVE_API ogive_status ogive_body_add_particle_file(ogive_world* world, const char* name, const ogive_body_def* def,
+                                                    const char* path, ogive_body_id* id);
 /* Particles of all bodies now, as an HDF5 file of groups /<body>/<field>; atomic as a checkpoint. */
 OGIVE_API ogive_status ogive_particles_write(ogive_world* world, const char* path);
 /* An XDMF time series over `count` such files (paths relative to the XDMF file), for ParaView; atomic. The counts and fields

@@ -12,6 +12,7 @@
 
 #include "hdf5_archive.hpp"
 #include "ogive.h"
+#include "particle_text.hpp"
 #include "series.hpp"
 
 namespace {
@@ -304,6 +305,26 @@ ogive_status ogive_file_info(const char* path, char* text, size_t capacity, size
     if (small > 0)
       lines += "  and " + std::to_string(small) + " of fewer than " + std::to_string(kListed) + " elements\n";
   });
+}
+
+ogive_status ogive_body_add_particle_file(ogive_world* world, const char* name, const ogive_body_def* def, const char* path,
+                                          ogive_body_id* id) {
+  if (!world) return OGIVE_ERROR_ARGUMENT;
+  if (!path || !*path)
+    return ogive_world_report(
+        world, OGIVE_ERROR_ARGUMENT,
+        path ? "path is empty, expected the name of a file" : "path is NULL, expected a file name");
+  return guarded(
+      [&] {
+        const ogive::io::ParticleList particles = ogive::io::read_particle_text(path);
+        require(ogive_body_add_particles(world, name, def, static_cast<std::int64_t>(particles.volumes.size()),
+                                         particles.positions.data(), particles.volumes.data(), id));
+      },
+      [&](ogive_status status, const char* reason) {
+        const bool in_line = *reason == ':';
+        return ogive_world_report(world, status, (in_line ? path + std::string(reason)
+                                                          : '"' + std::string(path) + "\" " + reason).c_str());
+      });
 }
 
 ogive_status ogive_particles_write(ogive_world* world, const char* path) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "filled_mesh.hpp"
-#include "particle_csv.hpp"
 
 namespace driver {
 namespace {
@@ -128,8 +127,11 @@ class Builder {
       assign(shape.reference, solid->reference);
       assign(shape.spacing, solid->spacing);
       require(ogive_body_add_solid(world_.get(), body.name.c_str(), &def, &shape, &id), path);
+    } else if (const auto* file = std::get_if<ParticleFileShape>(&body.shape)) {
+      require(ogive_body_add_particle_file(world_.get(), body.name.c_str(), &def, file->file.c_str(), &id),
+              path + ".particles");
     } else {
-      const ParticleList particles = particles_of(body, path);
+      const ParticleList particles = particles_of_mesh(body, path);
       require(ogive_body_add_particles(world_.get(), body.name.c_str(), &def,
                                        static_cast<int64_t>(particles.volumes.size()), particles.positions.data(),
                                        particles.volumes.data(), &id),
@@ -138,10 +140,7 @@ class Builder {
     body_ids_.push_back(id);
   }
 
-  ParticleList particles_of(const BodyScene& body, const std::string& path) {
-    if (const auto* file = std::get_if<ParticleFileShape>(&body.shape)) {
-      return read_particle_csv(file->file, scene_.place(path + ".particles"));
-    }
+  ParticleList particles_of_mesh(const BodyScene& body, const std::string& path) {
     FilledMesh filled = fill_mesh(std::get<MeshShape>(body.shape), scene_.place(path + ".mesh"));
     if (filled.repaired) notes_.push_back("mesh of body " + body.name + ":\n" + filled.report);
     return std::move(filled.particles);

@@ -27,10 +27,21 @@ constexpr ElementType element_type() {
   }
 }
 
+// Grows by one with each set of arrays that is added. 2: loads, forces of the host, sums over pairs.
+constexpr std::int32_t save_version = 2;
+
 class Archive {
  public:
   virtual ~Archive() = default;
   virtual bool loading() const = 0;
+  // Of what is read; arrays that it has not keep their initial values.
+  std::int32_t version() const { return version_; }
+  void exchange_version() {
+    value("version", version_);
+    if (version_ < 1 || version_ > save_version)
+      throw Error(ErrorKind::Format, "version: this library reads 1.." + std::to_string(save_version) + ", found " +
+                                         std::to_string(version_));
+  }
 
   // A single value; enumerations travel as int32, bool as int32 (0 or 1).
   template <class T>
@@ -89,6 +100,7 @@ class Archive {
   virtual void get(const std::string& name, std::int64_t count, void* data) = 0;
 
  private:
+  std::int32_t version_ = save_version;
   void expect(const std::string& name, ElementType type, std::int64_t count) {
     const std::int64_t n = find(name, type);
     if (n != count)

@@ -89,8 +89,7 @@ bool has_left(const Model& model, const State& state, const std::string& body, s
   return false;
 }
 
-void book_departure(const Material& material, double cell_size, BodyState& body, std::int64_t p) {
-  BodyTotals& totals = body.totals;
+void book_departure(const Material& material, double cell_size, const BodyState& body, std::int64_t p, BodyTotals& totals) {
   const double* v = &body.velocity[4 * p];
   const double mass = body.position[4 * p + 3];
   ++totals.left_particles;
@@ -101,73 +100,65 @@ void book_departure(const Material& material, double cell_size, BodyState& body,
       mass / material.density * body.energy[p];
 }
 
-// Room for n values, of which the old ones need not be kept. Capacity grows by a sixteenth, not to the double: these
-// arrays are most of the memory.
-template <class Array>
-void make_room(Array& array, std::size_t n) {
-  if (array.capacity() < n) {
-    Array().swap(array);
-    array.reserve(n + n / 16);
-  }
-  array.resize(n);
+// Takes all the memory that reorder needs and changes no value: should there be too little, the body is as it was. Capacity
+// grows by a sixteenth, not to the double: these arrays are most of the memory.
+void reserve_for(BodyState& body, std::size_t padded, Workspace& workspace) {
+  const auto reserve = [](auto& array, std::size_t n) {
+    if (array.capacity() < n) array.reserve(n + n / 16);
+  };
+  reserve(workspace.scratch, 4 * padded);
+  reserve(body.position, 4 * padded);
+  reserve(body.velocity, 4 * padded);
+  if (!body.force.empty()) reserve(body.force, 4 * padded);
+  if (!body.affine.empty()) reserve(body.affine, affine_size * padded);
+  body.for_each_scalar([&](AlignedVector<double>& array) { reserve(array, padded); });
+  reserve(body.number, padded);
+  if (!body.loads.empty()) reserve(body.loads, padded);
 }
 
 // New order of a body's particles: `source[i]` is the old place of the particle now at i; padding repeats the last one. The
-// scratch array holds one record a particle and stays, so that no memory is asked for in a running simulation.
+// scratch array holds one record a particle and stays, so that no memory is asked for in a running simulation. All memory was
+// reserved before: nothing here fails.
 void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Workspace& workspace) {
   const std::int64_t padded = static_cast<std::int64_t>(source.size());
   const std::size_t n = static_cast<std::size_t>(padded);
-  make_room(workspace.scratch, 4 * n);
+  workspace.scratch.resize(4 * n);
   double* const scratch = workspace.scratch.data();
-  // Takes `size` values of each particle to the scratch array, from the `first` of `stride` on.
-  const auto take = [&](const AlignedVector<double>& array, int stride, int first, int size) {
+  // Sends `size` values of each particle, from the `first` of `stride` on, through the scratch array.
+  const auto part = [&](AlignedVector<double>& array, int stride, int first, int size) {
     const double* const from = array.data() + first;
 #pragma omp parallel for num_threads(workspace.threads) schedule(static)
     for (std::int64_t i = 0; i < padded; ++i)
       for (int c = 0; c < size; ++c) scratch[size * i + c] = from[stride * static_cast<std::int64_t>(source[i]) + c];
-  };
-  const auto scalars = [&](AlignedVector<double>& array) {
-    take(array, 1, 0, 1);
-    make_room(array, n);
-    double* const to = array.data();
+    if (array.size() < stride * n) array.resize(stride * n);
+    double* const to = array.data() + first;
 #pragma omp parallel for num_threads(workspace.threads) schedule(static)
-    for (std::int64_t i = 0; i < padded; ++i) to[i] = scratch[i];
+    for (std::int64_t i = 0; i < padded; ++i)
+      for (int c = 0; c < size; ++c) to[stride * i + c] = scratch[size * i + c];
   };
   const auto records = [&](AlignedVector<double>& array) {
-    take(array, 4, 0, 4);
-    make_room(array, 4 * n);
-    double* const to = array.data();
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-    for (std::int64_t i = 0; i < 4 * padded; ++i) to[i] = scratch[i];
+    if (array.empty()) return;
+    part(array, 4, 0, 4);
+    array.resize(4 * n);
   };
   records(body.position);
   records(body.velocity);
+  records(body.force);
   if (!body.affine.empty()) {
-    // A vector at a time goes through the scratch array; room is made when the first one is out, so the others go with it.
-    AlignedVector<double> fresh;
-    AlignedVector<double>* to = &body.affine;
-    if (body.affine.capacity() < affine_size * n) {
-      make_room(fresh, affine_size * n);
-      to = &fresh;
-    } else if (body.affine.size() < affine_size * n) {
-      body.affine.resize(affine_size * n);
-    }
-    for (int vector = 0; vector < 3; ++vector) {
-      take(body.affine, affine_size, 3 * vector, 3);
-      double* const values = to->data();
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-      for (std::int64_t i = 0; i < padded; ++i)
-        for (int c = 0; c < 3; ++c) values[affine_size * i + 3 * vector + c] = scratch[3 * i + c];
-    }
-    if (to == &fresh) body.affine.swap(fresh);
+    for (int vector = 0; vector < 3; ++vector) part(body.affine, affine_size, 3 * vector, 3);
     body.affine.resize(affine_size * n);
   }
-  body.for_each_scalar(scalars);
-  std::int32_t* const numbers = reinterpret_cast<std::int32_t*>(scratch);
-  for (std::int64_t i = 0; i < padded; ++i) numbers[i] = body.number[source[i]];
-  make_room(body.number, n);
-  std::copy(numbers, numbers + n, body.number.begin());
-  body.padded = padded;
+  body.for_each_scalar([&](AlignedVector<double>& array) {
+    part(array, 1, 0, 1);
+    array.resize(n);
+  });
+  std::int32_t* const integers = reinterpret_cast<std::int32_t*>(scratch);
+  for (AlignedVector<std::int32_t>* array : {&body.number, &body.loads}) {
+    if (array->empty()) continue;
+    for (std::int64_t i = 0; i < padded; ++i) integers[i] = (*array)[source[i]];
+    array->resize(n);
+    std::copy(integers, integers + n, array->begin());
+  }
 }
 
 void bin_body(const Model& model, State& state, Workspace& workspace, int index) {
@@ -180,13 +171,14 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   place.reserve(body.particles);
   bin.reserve(body.particles);
   std::vector<Group> groups;
+  BodyTotals totals = body.totals;
   BlockTable table(body.groups.size() + 64);
   std::uint64_t last_key = ~std::uint64_t{0};
   std::int32_t last_group = -1;
   auto take = [&](std::int64_t p) {
     const double* x = &body.position[4 * p];
     if (has_left(model, state, model.bodies[index].name, body.number[p], x)) {
-      book_departure(model.material_of(index), grid.cell_size, body, p);
+      book_departure(model.material_of(index), grid.cell_size, body, p, totals);
       return;
     }
     std::array<std::int32_t, 3> cell, block;
@@ -224,7 +216,6 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
     for (const Group& group : body.groups)
       for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) take(p);
   }
-  body.particles = static_cast<std::int64_t>(place.size());
 
   // Groups by block: z, then y, then x. The particles keep their order within a cell.
   std::vector<std::int32_t> order(groups.size());
@@ -234,7 +225,8 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   });
   std::vector<std::int32_t> cursor(groups.size() * block_nodes, 0);
   for (const std::int32_t b : bin) ++cursor[b];
-  body.groups.clear();
+  std::vector<Group> sorted;
+  sorted.reserve(groups.size());
   std::int64_t next = 0;
   for (const std::int32_t g : order) {
     Group group = groups[g];
@@ -246,14 +238,21 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
       at += count;
     }
     next = group.padded_end();
-    body.groups.push_back(group);
+    sorted.push_back(group);
   }
   AlignedVector<std::int32_t> source(static_cast<std::size_t>(next), -1);
   for (std::size_t i = 0; i < place.size(); ++i) source[cursor[bin[i]]++] = place[i];
-  for (const Group& group : body.groups)
+  for (const Group& group : sorted)
     for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p)
       source[p] = source[group.begin + group.count - 1];
+  reserve_for(body, source.size(), workspace);
+
+  // From here on nothing fails.
   reorder(body, source, workspace);
+  body.groups.swap(sorted);
+  body.particles = static_cast<std::int64_t>(place.size());
+  body.padded = next;
+  body.totals = totals;
   // The padding moves like the particle that it repeats but weighs nothing.
   for (const Group& group : body.groups)
     for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p) {
@@ -302,35 +301,33 @@ void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable&
     }
 }
 
-bool in_region(const Clamp& clamp, const Vector3& x) {
-  if (clamp.region == Region::Box) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (x[axis] < clamp.a[axis] || x[axis] > clamp.b[axis]) return false;
-    return true;
+// Calls visit(node) for each node in the space that carries the body, or any body if it is -1.
+template <class Visit>
+void for_nodes_in(const Model& model, const Workspace& workspace, const Space& space, int body, Visit&& visit) {
+  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+    const Slot& slot = workspace.slots[s];
+    if (body >= 0 && slot.field != model.field_of(body)) continue;
+    for (int n = 0; n < block_nodes; ++n) {
+      Vector3 x;
+      for (int axis = 0; axis < 3; ++axis)
+        x[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * slot.block[axis] + ((n >> (2 * axis)) & 3));
+      if (space.contains(x)) visit(static_cast<std::int64_t>(s) * block_nodes + n);
+    }
   }
-  double length = 0, along = 0, squared = 0;
-  for (int axis = 0; axis < 3; ++axis) length += clamp.b[axis] * clamp.b[axis];
-  for (int axis = 0; axis < 3; ++axis) along += (x[axis] - clamp.a[axis]) * clamp.b[axis];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double across = x[axis] - clamp.a[axis] - along / length * clamp.b[axis];
-    squared += across * across;
-  }
-  return squared >= clamp.radius * clamp.radius;
 }
 
-void find_clamp_nodes(const Model& model, Workspace& workspace) {
+void find_held_nodes(const Model& model, Workspace& workspace) {
   workspace.clamps.clear();
   for (const Clamp& clamp : model.clamps)
-    for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
-      const Slot& slot = workspace.slots[s];
-      if (clamp.body >= 0 && slot.field != model.field_of(clamp.body)) continue;
-      for (int n = 0; n < block_nodes; ++n) {
-        Vector3 x;
-        for (int axis = 0; axis < 3; ++axis)
-          x[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * slot.block[axis] + ((n >> (2 * axis)) & 3));
-        if (in_region(clamp, x)) workspace.clamps.push_back({static_cast<std::int64_t>(s) * block_nodes + n, clamp.axes});
-      }
-    }
+    for_nodes_in(model, workspace, clamp, clamp.body,
+                 [&](std::int64_t node) { workspace.clamps.push_back({node, clamp.axes}); });
+  workspace.driven.clear();
+  for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    const Load& load = model.loads[i];
+    if (load.kind != LoadKind::Velocity) continue;
+    for_nodes_in(model, workspace, load, load.body,
+                 [&](std::int64_t node) { workspace.driven.push_back({node, static_cast<std::int32_t>(i)}); });
+  }
 }
 
 KernelGroup describe_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link) {
@@ -450,12 +447,13 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
 
   // Mixed blocks and their contact records.
   workspace.mixed.clear();
-  std::int32_t contacts = 0;
+  std::int32_t contacts = 0, pairs = 0;
   for (std::int32_t s = 0, n = static_cast<std::int32_t>(workspace.slots.size()); s < n;) {
     std::int32_t end = s + 1;
     while (end < n && workspace.slots[end].block == workspace.slots[s].block) ++end;
     if (end - s > 1) {
-      workspace.mixed.push_back({s, end - s});
+      workspace.mixed.push_back({s, end - s, pairs});
+      pairs += (end - s) * (end - s - 1) / 2;
       for (std::int32_t i = s; i < end; ++i) workspace.slots[i].contact = contacts++;
     }
     s = end;
@@ -470,7 +468,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   for (GroupLinks& link : workspace.links)
     for (const std::int32_t s : link.slot)
       if (s >= 0 && workspace.slots[s].contact >= 0) link.contact = true;
-  find_clamp_nodes(model, workspace);
+  find_held_nodes(model, workspace);
 
   workspace.nodes.resize(workspace.slots.size() * block_nodes);
   workspace.contacts.resize(static_cast<std::size_t>(contacts) * block_nodes);
@@ -481,6 +479,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   workspace.stress_sums.resize(workspace.links.size());
   workspace.move_sums.resize(workspace.links.size());
   workspace.slot_contact_force.resize(workspace.slots.size());
+  workspace.pair_sums.resize(static_cast<std::size_t>(pairs));
   workspace.slot_given.resize(workspace.slots.size());
   workspace.displacement.resize(model.numerics.update_order == UpdateOrder::StressLast ? state.bodies.size() : 0);
   for (std::size_t b = 0; b < workspace.displacement.size(); ++b)
@@ -546,7 +545,7 @@ std::int64_t Workspace::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
   std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(approach) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
-                       bytes(scratch);
+                       bytes(pair_sums) + bytes(driven) + bytes(load_sums) + bytes(scratch);
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
   return total;
 }

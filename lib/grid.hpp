@@ -33,6 +33,7 @@ struct GroupLinks {
   std::array<std::int32_t, 3> tile_low{}, tile_high{};
   Vector3 corner{};
   bool contact = false;  // some of its slots have contact records
+  std::int32_t first_load_sum = 0;  // in Workspace::load_sums
 };
 
 // Groups of all bodies in one row of blocks along x: worked on by one thread, in order. Pencils of one of the four colours
@@ -43,6 +44,21 @@ struct Pencil {
 
 struct MixedBlock {
   std::int32_t first_slot = 0, count = 0;
+  std::int32_t first_pair = 0;  // in Workspace::pair_sums: its fields (0, 1), (0, 2) ... (1, 2) ...
+
+  std::int32_t pair(int a, int b) const { return first_pair + a * count - a * (a + 1) / 2 + b - a - 1; }  // a < b
+};
+
+// Contact of two fields in one block in one step; force on the first.
+struct PairSums {
+  Vector3 force{};
+  double friction_dissipation = 0, contact_work = 0;
+};
+
+// Loads on the particles of one group in one step.
+struct LoadSums {
+  Vector3 force{};
+  double work = 0;
 };
 
 // A node beyond a mirror face and its image inside.
@@ -64,6 +80,12 @@ struct ClampNode {
   std::int32_t axes = 0;
 };
 
+// A node whose velocity a load prescribes.
+struct DrivenNode {
+  std::int64_t node = 0;
+  std::int32_t load = 0;
+};
+
 // Everything that a step needs besides model and state; holds no information of its own between steps.
 struct Workspace {
   const KernelTable* kernels = nullptr;
@@ -81,6 +103,7 @@ struct Workspace {
   std::vector<MixedBlock> mixed;
   std::vector<FaceNodes> faces;
   std::vector<ClampNode> clamps;
+  std::vector<DrivenNode> driven;
   std::vector<KernelMaterial> materials;  // by body
 
   // One entry a link, filled by the kernels and summed in order.
@@ -88,10 +111,14 @@ struct Workspace {
   std::vector<MoveSums> move_sums;
   // One entry a slot of a mixed block.
   std::vector<Vector3> slot_contact_force;
+  std::vector<PairSums> pair_sums;   // one entry a pair of fields of a mixed block
   std::vector<double> slot_given;  // sum of m v . dv over the nodes; one entry a slot
   // Of each body's particles in this step, records; empty where the stress comes first.
   std::vector<AlignedVector<double>> displacement;
-  AlignedVector<double> scratch;          // for binning
+  std::vector<LoadSums> load_sums;        // of each link in turn: the loads on its body's particles, then the host's forces
+  AlignedVector<double> scratch;          // for binning: one record a particle
+  // The step has begun to change the state: until then a step that fails leaves it as it was.
+  bool changing = false;
 
   std::int64_t memory_bytes() const;
 };

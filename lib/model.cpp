@@ -36,6 +36,22 @@ void require_choice(const std::string& field, E x, int count) {
   if (i < 0 || i >= count) refuse(field, "0.." + std::to_string(count - 1), std::to_string(i));
 }
 
+void validate_space(const Space& space, const std::string& prefix) {
+  require_choice(prefix + "region", space.region, 3);
+  if (space.region == Region::Everywhere) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    require_finite(prefix + "a", space.a[axis]);
+    require_finite(prefix + "b", space.b[axis]);
+  }
+  if (space.region == Region::Box) {
+    for (int axis = 0; axis < 3; ++axis)
+      require(space.a[axis] <= space.b[axis], prefix + "b", "at least a = " + text(space.a[axis]), space.b[axis]);
+  } else {
+    require_positive(prefix + "radius", space.radius);
+    require(space.b[0] != 0 || space.b[1] != 0 || space.b[2] != 0, prefix + "b", "a direction that is not zero", 0);
+  }
+}
+
 }  // namespace
 
 void Material::validate() {
@@ -130,20 +146,33 @@ void Model::validate_numerics() const {
   require_choice("update_order", numerics.update_order, 2);
 }
 
-void Model::validate_clamp(const Clamp& clamp) const {
-  require_choice("clamp region", clamp.region, 2);
-  for (int axis = 0; axis < 3; ++axis) {
-    require_finite("clamp a", clamp.a[axis]);
-    require_finite("clamp b", clamp.b[axis]);
-  }
-  if (clamp.region == Region::Box) {
+bool Space::contains(const Vector3& x) const {
+  if (region == Region::Everywhere) return true;
+  if (region == Region::Box) {
     for (int axis = 0; axis < 3; ++axis)
-      require(clamp.a[axis] <= clamp.b[axis], "clamp b", "at least a = " + text(clamp.a[axis]), clamp.b[axis]);
-  } else {
-    require_positive("clamp radius", clamp.radius);
-    require(clamp.b[0] != 0 || clamp.b[1] != 0 || clamp.b[2] != 0, "clamp b", "a direction that is not zero", 0);
+      if (x[axis] < a[axis] || x[axis] > b[axis]) return false;
+    return true;
   }
+  double length = 0, along = 0, squared = 0;
+  for (int axis = 0; axis < 3; ++axis) length += b[axis] * b[axis];
+  for (int axis = 0; axis < 3; ++axis) along += (x[axis] - a[axis]) * b[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double across = x[axis] - a[axis] - along / length * b[axis];
+    squared += across * across;
+  }
+  return squared >= radius * radius;
+}
+
+void Model::validate_clamp(const Clamp& clamp) const {
+  validate_space(clamp, "clamp ");
   require(clamp.axes >= 1 && clamp.axes <= 7, "clamp axes", "1..7", clamp.axes);
+}
+
+void Model::validate_load(const Load& load) const {
+  require_choice("load kind", load.kind, 3);
+  validate_space(load, "load ");
+  if (load.kind == LoadKind::Velocity) require(load.axes >= 1 && load.axes <= 7, "load axes", "1..7", load.axes);
+  if (load.kind == LoadKind::Traction) require_positive("load area", load.area);
 }
 
 void Model::validate_contact(const ContactRule& rule, const char* where) const {
@@ -173,6 +202,13 @@ void Model::validate_all() const {
       refuse("contact pair master", "one of the pair", "body " + std::to_string(pair.rule.master));
   }
   for (const Clamp& clamp : clamps) known(clamp.body, "clamp body", true);
+  for (const Load& load : loads) known(load.body, "load body", load.kind != LoadKind::Traction);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    int count = 0;
+    for (const Load& load : loads) count += load.on_particles() && load.acts_on(static_cast<int>(b));
+    require(count <= most_particle_loads, "loads of body \"" + bodies[b].name + "\" by acceleration and traction",
+            "at most " + std::to_string(most_particle_loads), count);
+  }
   known(stop.body, "stop body", true);
 }
 
@@ -200,14 +236,28 @@ void Model::exchange(Archive& a) {
     }
   };
   count("model/clamps/count", clamps, 1000000);
+  const auto space = [&](const std::string& at, Space& where) {
+    a.value(at + "region", where.region);
+    a.value(at + "a", where.a);
+    a.value(at + "b", where.b);
+    a.value(at + "radius", where.radius);
+  };
   for (std::size_t i = 0; i < clamps.size(); ++i) {
     const std::string at = "model/clamps/" + std::to_string(i) + "/";
-    a.value(at + "region", clamps[i].region);
-    a.value(at + "a", clamps[i].a);
-    a.value(at + "b", clamps[i].b);
-    a.value(at + "radius", clamps[i].radius);
+    space(at, clamps[i]);
     a.value(at + "body", clamps[i].body);
     a.value(at + "axes", clamps[i].axes);
+  }
+  if (a.version() >= 2) {
+    count("model/loads/count", loads, 1000000);
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const std::string at = "model/loads/" + std::to_string(i) + "/";
+      space(at, loads[i]);
+      a.value(at + "kind", loads[i].kind);
+      a.value(at + "body", loads[i].body);
+      a.value(at + "axes", loads[i].axes);
+      a.value(at + "area", loads[i].area);
+    }
   }
   count("model/materials/count", materials, 65535);
   for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -276,6 +326,7 @@ void Model::exchange(Archive& a) {
         throw Error(ErrorKind::Format, "model/bodies: material " + std::to_string(body.material) + " is unknown");
     for (Material& m : materials) m.validate();
     for (const Clamp& clamp : clamps) validate_clamp(clamp);
+    for (const Load& load : loads) validate_load(load);
     validate_contact(contact, "contact ");
     for (const PairRule& pair : pairs) validate_contact(pair.rule, "contact pair ");
     validate_all();

@@ -27,7 +27,8 @@ enum class Failure : std::int32_t { None = 0, PlasticStrain = 1 };
 enum class ContactMethod : std::int32_t { SingleField = 0, HuangFirst = 1, HuangSecond = 2 };
 enum class NormalRule : std::int32_t { Master = 0, Average = 1 };
 enum class Detection : std::int32_t { SharedNode = 0, Gap = 1 };
-enum class Region : std::int32_t { Box = 0, OutsideCylinder = 1 };
+enum class Region : std::int32_t { Box = 0, OutsideCylinder = 1, Everywhere = 2 };
+enum class LoadKind : std::int32_t { Acceleration = 0, Traction = 1, Velocity = 2 };
 
 struct Grid {
   double cell_size = 0;
@@ -50,13 +51,32 @@ struct Numerics {
   double grid_velocity_fraction() const { return transfer == Transfer::Apic ? 1.0 : pic_fraction; }
 };
 
-struct Clamp {
+// A part of space.
+struct Space {
   Region region = Region::Box;
   Vector3 a{}, b{};
   double radius = 0;
+
+  bool contains(const Vector3& x) const;
+};
+
+struct Clamp : Space {
   std::int32_t body = -1;
   std::int32_t axes = 7;
 };
+
+// What the host applies; its present value belongs to the state. Accelerations and tractions act on the particles that lay in
+// the space when the world was prepared, velocities on the nodes that lie in it.
+struct Load : Space {
+  LoadKind kind = LoadKind::Acceleration;
+  std::int32_t body = -1;
+  std::int32_t axes = 7;  // velocity
+  double area = 0;        // traction
+
+  bool on_particles() const { return kind != LoadKind::Velocity; }
+  bool acts_on(int index) const { return body < 0 || body == index; }
+};
+constexpr int most_particle_loads = 31;  // on a body: one bit of a particle's `loads` each
 
 struct Material {
   std::string name;
@@ -112,6 +132,7 @@ struct Model {
   Grid grid;
   Numerics numerics;
   std::vector<Clamp> clamps;
+  std::vector<Load> loads;
   std::vector<Material> materials;
   std::vector<Body> bodies;
   ContactMethod contact_method = ContactMethod::HuangSecond;
@@ -132,6 +153,7 @@ struct Model {
   void validate_grid() const;
   void validate_numerics() const;
   void validate_clamp(const Clamp& clamp) const;
+  void validate_load(const Load& load) const;
   void validate_contact(const ContactRule& rule, const char* where) const;
   void validate_all() const;  // what needs the whole model
 

@@ -21,7 +21,7 @@ std::int64_t State::memory_bytes() const {
     total += bytes(body.position) + bytes(body.velocity) + bytes(body.affine) + bytes(body.volume_ratio) +
              bytes(body.energy) + bytes(body.viscous_pressure) +
              bytes(body.plastic_strain) + bytes(body.yield_stress) + bytes(body.temperature) + bytes(body.number) +
-             bytes(body.groups);
+             bytes(body.loads) + bytes(body.force) + bytes(body.groups);
     for (const auto& c : body.stress) total += bytes(c);
     for (const auto& c : body.deformation) total += bytes(c);
   }
@@ -58,6 +58,38 @@ void allocate_transfer(const Model& model, const Material& material, BodyState& 
     body.viscous_pressure.assign(n, 0.0);
 }
 
+// Pairs that have met: two whole numbers and eight others each.
+static void exchange_pairs(State& state, Archive& a) {
+  std::vector<std::int32_t> bodies;
+  std::vector<double> sums;
+  if (!a.loading())
+    for (const PairTotals& pair : state.pairs) {
+      bodies.insert(bodies.end(), {pair.a, pair.b});
+      sums.insert(sums.end(), {pair.force[0], pair.force[1], pair.force[2], pair.impulse[0], pair.impulse[1],
+                               pair.impulse[2], pair.friction_dissipation, pair.contact_work});
+    }
+  a.resizable("state/pairs/bodies", bodies, std::int64_t{1} << 28);
+  a.sized("state/pairs/sums", sums, 4 * static_cast<std::int64_t>(bodies.size()));
+  if (!a.loading()) return;
+  const std::int32_t count = static_cast<std::int32_t>(state.bodies.size());
+  for (std::size_t i = 0; i + 2 <= bodies.size(); i += 2) {
+    PairTotals pair;
+    pair.a = bodies[i];
+    pair.b = bodies[i + 1];
+    const double* s = &sums[4 * i];
+    pair.force = {s[0], s[1], s[2]};
+    pair.impulse = {s[3], s[4], s[5]};
+    pair.friction_dissipation = s[6];
+    pair.contact_work = s[7];
+    const bool ordered = state.pairs.empty() || state.pairs.back().a < pair.a ||
+                         (state.pairs.back().a == pair.a && state.pairs.back().b < pair.b);
+    if (!ordered || pair.a < 0 || pair.a >= pair.b || pair.b >= count)
+      throw Error(ErrorKind::Format, "state/pairs/bodies: pair " + std::to_string(i / 2) + " is not consistent");
+    state.pairs.push_back(pair);
+  }
+  if (bodies.size() % 2 != 0) throw Error(ErrorKind::Format, "state/pairs/bodies: expected an even count");
+}
+
 void State::exchange(const Model& model, Archive& a) {
   if (a.loading()) bodies.assign(model.bodies.size(), BodyState{});
   a.value("state/time", time);
@@ -77,6 +109,19 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/ledger/boundary_impulse", ledger.boundary_impulse);
   a.value("state/ledger/external_impulse", ledger.external_impulse);
   a.value("state/ledger/initial_total", ledger.initial_total);
+
+  if (a.version() >= 2) {
+    if (a.loading()) loads.assign(model.loads.size(), LoadState{});
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const std::string at = "state/loads/" + std::to_string(i) + "/";
+      a.value(at + "value", loads[i].value);
+      a.value(at + "mass", loads[i].mass);
+      a.value(at + "force", loads[i].force);
+      a.value(at + "impulse", loads[i].impulse);
+      a.value(at + "work", loads[i].work);
+    }
+    exchange_pairs(*this, a);
+  }
 
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     BodyState& body = bodies[b];
@@ -148,6 +193,15 @@ void State::exchange(const Model& model, Archive& a) {
     if (model.numerics.update_order == UpdateOrder::StressLast && material.viscous())
       a.sized(at + "viscous_pressure", body.viscous_pressure, n);
     a.sized(at + "number", body.number, n);
+    if (a.version() >= 2) {
+      bool loaded = false;
+      for (const Load& load : model.loads)
+        loaded = loaded || (load.on_particles() && load.acts_on(static_cast<int>(b)));
+      if (loaded) a.sized(at + "loads", body.loads, n);
+      bool forced = !body.force.empty();
+      a.value(at + "forced", forced);
+      if (forced) a.sized(at + "force", body.force, 4 * n);
+    }
     if (a.loading()) {
       // Positions must lie where the groups say, or the tiles would be left: the bounds are those of the drift limit.
       const double h = model.grid.cell_size;

@@ -62,6 +62,8 @@ struct BodyState {
   AlignedVector<double> viscous_pressure;       // waits for the next step's forces where the stress comes last
   std::array<AlignedVector<double>, 9> deformation;  // F row by row
   AlignedVector<std::int32_t> number;                // the particle's number in its body, -1 in the padding
+  AlignedVector<std::int32_t> loads;                 // bit k: the body's k-th load on particles acts on it; empty: none
+  AlignedVector<double> force;                       // records {fx, fy, fz, 0}: the host's force; empty: none was given
   std::vector<Group> groups;                         // ordered by block: z, then y, then x
   Vector3 initial_spin{};                            // angular velocity given with the body; the start of `affine`
   bool drifted = false;                              // some particle has left its group's bounds: bin before the next step
@@ -89,6 +91,23 @@ struct Ledger {
   double initial_total = 0;
 };
 
+// Present value of a load of the model, and what it has done.
+struct LoadState {
+  Vector3 value{};           // acceleration, traction or velocity
+  double mass = 0;           // of the particles that it acted on at first
+  Vector3 force{};           // in the last step
+  Vector3 impulse{};         // so far
+  double work = 0;           // so far
+};
+
+// Contact between two bodies that have met, a < b.
+struct PairTotals {
+  std::int32_t a = -1, b = -1;
+  Vector3 force{};           // on a, in the last step
+  Vector3 impulse{};         // on a, so far
+  double friction_dissipation = 0, contact_work = 0;
+};
+
 // Memory of the stop condition.
 struct StopState {
   double reference_time = 0, reference_speed = 0;
@@ -100,6 +119,8 @@ struct State {
   double time = 0, last_time_step = 0, stable_time_step = 0;
   std::int64_t steps = 0, particle_steps = 0;
   std::vector<BodyState> bodies;
+  std::vector<LoadState> loads;    // one for each of the model's
+  std::vector<PairTotals> pairs;   // ordered by a, then b
   Ledger ledger;
   StopState stop;
 

@@ -11,6 +11,7 @@
 #include "boundary/boundary.hpp"
 #include "contact/contact.hpp"
 #include "error.hpp"
+#include "loads/loads.hpp"
 #include "simd/subnormals.hpp"
 #include "time_step.hpp"
 
@@ -24,6 +25,8 @@ void map_contact_sums(const Model& model, State& state, Workspace& workspace);
 void nodal_velocities(Workspace& workspace);
 void update_stress(const Model& model, State& state, Workspace& workspace, double dt);
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
+void map_external_force(const Model& model, const State& state, Workspace& workspace);
+void measure_external_force(const Model& model, State& state, Workspace& workspace, double dt);
 void trial_velocities(const Model& model, State& state, Workspace& workspace, double dt);
 void accelerations(State& state, Workspace& workspace, double dt);
 void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt);
@@ -34,8 +37,11 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   const bool contact = model.contact_method != ContactMethod::SingleField;
   const bool second_method = model.contact_method == ContactMethod::HuangSecond;
   const bool stress_first = model.numerics.update_order == UpdateOrder::StressFirst;
+  workspace.changing = false;
   bin_particles(model, state, workspace, false);                 // particles that left their cells; the domain
   if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
+  allocate_load_sums(model, state, workspace);
+  workspace.changing = true;
 
   clear_grid(workspace);
   clear_contacts(workspace);
@@ -51,14 +57,17 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   } else {
     map_internal_force(model, state, workspace, dt);             // (31)
   }
+  map_external_force(model, state, workspace);                   // loads of the host
   fold_force(state, workspace, dt);
   trial_velocities(model, state, workspace, dt);                 // (32), (11) or (26)
   if (stress_first && second_method) restore_approach(workspace); // the jump of (25) belongs to the increment (34)
   hold_faces(state, workspace);
   if (contact) apply_contact_force(model, state, workspace, dt); // (12)-(22), (14)
   apply_clamps(state, workspace);
+  apply_driven_velocities(model, state, workspace, dt);
   unfold_motion(state, workspace);
   accelerations(state, workspace, dt);
+  measure_external_force(model, state, workspace, dt);
   update_velocity_and_position(model, state, workspace, dt);     // (34), (33)
 
   if (!stress_first) {
@@ -187,6 +196,27 @@ void update_stress(const Model& model, State& state, Workspace& workspace, doubl
                       "; a smaller time_step_factor may help");
     }
   }
+}
+
+bool any_loads(const State& state) {
+  for (const BodyState& body : state.bodies)
+    if (particles_loaded(body)) return true;
+  return false;
+}
+
+void map_external_force(const Model& model, const State& state, Workspace& workspace) {
+  if (!any_loads(state)) return;
+  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
+    if (particles_loaded(state.bodies[link.body])) map_loads(model, state, workspace, index);
+  });
+}
+
+void measure_external_force(const Model& model, State& state, Workspace& workspace, double dt) {
+  if (!any_loads(state)) return;
+  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
+    if (particles_loaded(state.bodies[link.body])) measure_loads(model, state, workspace, index, dt);
+  });
+  book_loads(model, state, workspace, dt);
 }
 
 // Node records become {velocity, mass | trial velocity}.

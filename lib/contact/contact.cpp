@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 namespace ogive {
 namespace {
@@ -182,18 +183,50 @@ template <class Work>
 void for_contact_nodes(const Model& model, State& state, Workspace& workspace, bool trial, Work&& work) {
   const std::int64_t blocks = static_cast<std::int64_t>(workspace.mixed.size());
   std::vector<BlockSums> sums(workspace.mixed.size());
+  std::exception_ptr failure;  // want of memory must not leave the parallel region
 #pragma omp parallel num_threads(workspace.threads) if (blocks > 1)
   {
     ContactNode contact(model);
 #pragma omp for schedule(dynamic, 4)
-    for (std::int64_t i = 0; i < blocks; ++i)
-      for (int node = 0; node < block_nodes; ++node)
-        if (contact.collect(workspace, workspace.mixed[i], node, trial)) work(contact, workspace.mixed[i], node, sums[i]);
+    for (std::int64_t i = 0; i < blocks; ++i) try {
+        for (int node = 0; node < block_nodes; ++node)
+          if (contact.collect(workspace, workspace.mixed[i], node, trial)) work(contact, workspace.mixed[i], node, sums[i]);
+      } catch (...) {
+#pragma omp critical(ogive_contact_failure)
+        failure = std::current_exception();
+      }
   }
+  if (failure) std::rethrow_exception(failure);
   for (const BlockSums& s : sums) {
     state.ledger.friction_dissipation += s.friction_dissipation;
     state.ledger.contact_work += s.contact_work;
   }
+}
+
+// Adds this step's sums over pairs of fields to those of the pairs of bodies, block by block.
+void book_pairs(State& state, const Workspace& workspace, double dt) {
+  for (PairTotals& pair : state.pairs) pair.force = {};
+  for (const MixedBlock& block : workspace.mixed)
+    for (int i = 0; i < block.count; ++i)
+      for (int j = i + 1; j < block.count; ++j) {
+        const PairSums& sums = workspace.pair_sums[block.pair(i, j)];
+        if (sums.contact_work == 0 && sums.force == Vector3{}) continue;
+        const std::int32_t a = workspace.slots[block.first_slot + i].field, b = workspace.slots[block.first_slot + j].field;
+        auto pair = std::lower_bound(state.pairs.begin(), state.pairs.end(), std::pair(a, b),
+                                     [](const PairTotals& left, const std::pair<std::int32_t, std::int32_t>& right) {
+                                       return std::pair(left.a, left.b) < right;
+                                     });
+        if (pair == state.pairs.end() || pair->a != a || pair->b != b) {
+          pair = state.pairs.insert(pair, PairTotals{});
+          pair->a = a;
+          pair->b = b;
+        }
+        for (int c = 0; c < 3; ++c) pair->force[c] += sums.force[c];
+        pair->friction_dissipation += sums.friction_dissipation;
+        pair->contact_work += sums.contact_work;
+      }
+  for (PairTotals& pair : state.pairs)
+    for (int c = 0; c < 3; ++c) pair.impulse[c] += pair.force[c] * dt;
 }
 
 }  // namespace
@@ -241,12 +274,17 @@ void restore_approach(Workspace& workspace) {
 void apply_contact_force(const Model& model, State& state, Workspace& workspace, double dt) {
   for (const MixedBlock& block : workspace.mixed)
     for (std::int32_t i = 0; i < block.count; ++i) workspace.slot_contact_force[block.first_slot + i] = {};
+  std::fill(workspace.pair_sums.begin(), workspace.pair_sums.end(), PairSums{});
   for_contact_nodes(
       model, state, workspace, true, [&](ContactNode& contact, const MixedBlock& block, int node, BlockSums& sums) {
         contact.resolve(true, [&](int a, int b, const Vec3& impulse, double friction, double loss) {
           sums.friction_dissipation += friction;
           sums.contact_work -= loss;
+          PairSums& pair = workspace.pair_sums[block.pair(a, b)];
+          pair.friction_dissipation += friction;
+          pair.contact_work -= loss;
           for (int c = 0; c < 3; ++c) {
+            pair.force[c] += impulse[c] / dt;
             workspace.slot_contact_force[block.first_slot + a][c] += impulse[c] / dt;
             workspace.slot_contact_force[block.first_slot + b][c] -= impulse[c] / dt;
           }
@@ -264,6 +302,7 @@ void apply_contact_force(const Model& model, State& state, Workspace& workspace,
       Vector3& force = state.bodies[workspace.slots[block.first_slot + i].field].totals.contact_force;
       for (int c = 0; c < 3; ++c) force[c] += workspace.slot_contact_force[block.first_slot + i][c];
     }
+  book_pairs(state, workspace, dt);
 }
 
 }  // namespace ogive

@@ -1,0 +1,193 @@
+// Loads on particles and driven nodes.
+#include "loads/loads.hpp"
+
+#define OGIVE_ISA_NAMESPACE loads
+#include "shape/weights.hpp"
+
+namespace ogive {
+namespace {
+
+using Lanes = loads::Vec<4>;  // one an axis; the fourth is idle
+
+// Calls visit(node record, weight) for the nodes of a particle.
+template <class Shape, class Visit>
+void for_particle_nodes(Workspace& workspace, const GroupLinks& link, double inverse_cell, const double* x, Visit&& visit) {
+  Lanes xi{}, first, w[Shape::nodes], d[Shape::nodes];
+  for (int axis = 0; axis < 3; ++axis) xi[axis] = (x[axis] - link.corner[axis]) * inverse_cell;
+  Shape::at(xi, first, w, d);
+  for (int k = 0; k < Shape::nodes; ++k)
+    for (int j = 0; j < Shape::nodes; ++j)
+      for (int i = 0; i < Shape::nodes; ++i) {
+        // Tile node t is node (t + 3) % 4 of neighbour block (t + 3) / 4 (transfer/tile.hpp).
+        const int t[3] = {static_cast<int>(first[0]) + i + 3, static_cast<int>(first[1]) + j + 3,
+                          static_cast<int>(first[2]) + k + 3};
+        const std::int32_t slot = link.slot[((t[2] >> 2) * 3 + (t[1] >> 2)) * 3 + (t[0] >> 2)];
+        const int node = ((t[2] & 3) * 4 + (t[1] & 3)) * 4 + (t[0] & 3);
+        visit(workspace.nodes[static_cast<std::size_t>(slot) * block_nodes + node], w[i][0] * w[j][1] * w[k][2]);
+      }
+}
+
+template <class Visit>
+void for_particle_nodes(const Model& model, Workspace& workspace, const GroupLinks& link, const double* x, Visit&& visit) {
+  const double inverse_cell = 1.0 / model.grid.cell_size;
+  if (model.numerics.shape_function == ShapeFunction::Linear)
+    for_particle_nodes<loads::LinearShape>(workspace, link, inverse_cell, x, visit);
+  else
+    for_particle_nodes<loads::QuadraticBSplineShape>(workspace, link, inverse_cell, x, visit);
+}
+
+// Force per mass of the body's loads on particles, in the order of their bits.
+struct BodyLoads {
+  int count = 0;
+  std::array<int, most_particle_loads> load{};
+  std::array<Vector3, most_particle_loads> per_mass{};
+};
+
+BodyLoads loads_of(const Model& model, const State& state, int body) {
+  BodyLoads found;
+  for (int i = 0; i < static_cast<int>(model.loads.size()); ++i) {
+    const Load& load = model.loads[i];
+    if (!load.on_particles() || !load.acts_on(body)) continue;
+    Vector3& per_mass = found.per_mass[found.count];
+    const double factor = load.kind == LoadKind::Traction ? load.area / state.loads[i].mass : 1.0;
+    for (int c = 0; c < 3; ++c) per_mass[c] = factor * state.loads[i].value[c];
+    found.load[found.count++] = i;
+  }
+  return found;
+}
+
+int count_loads(const Model& model, int body) {
+  int count = 0;
+  for (const Load& load : model.loads) count += load.on_particles() && load.acts_on(body);
+  return count;
+}
+
+}  // namespace
+
+bool particles_loaded(const BodyState& body) { return !body.loads.empty() || !body.force.empty(); }
+
+void select_loaded_particles(const Model& model, State& state) {
+  for (LoadState& load : state.loads) load.mass = 0;
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
+    BodyState& body = state.bodies[b];
+    if (count_loads(model, b) == 0) continue;
+    body.loads.assign(static_cast<std::size_t>(body.padded), 0);
+    int bit = 0;
+    for (std::size_t i = 0; i < model.loads.size(); ++i) {
+      const Load& load = model.loads[i];
+      if (!load.on_particles() || !load.acts_on(b)) continue;
+      for (std::int64_t p = 0; p < body.padded; ++p) {
+        const double* x = &body.position[4 * p];
+        if (!load.contains({x[0], x[1], x[2]})) continue;
+        body.loads[p] |= 1 << bit;
+        state.loads[i].mass += x[3];
+      }
+      ++bit;
+    }
+  }
+}
+
+void allocate_load_sums(const Model& model, const State& state, Workspace& workspace) {
+  std::vector<std::int32_t> size(state.bodies.size(), 0);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b)
+    if (particles_loaded(state.bodies[b])) size[b] = count_loads(model, static_cast<int>(b)) + 1;
+  std::int32_t next = 0;
+  for (GroupLinks& link : workspace.links) {
+    link.first_load_sum = next;
+    next += size[link.body];
+  }
+  workspace.load_sums.resize(static_cast<std::size_t>(next));
+}
+
+void map_loads(const Model& model, const State& state, Workspace& workspace, std::int32_t index) {
+  const GroupLinks& link = workspace.links[index];
+  const BodyState& body = state.bodies[link.body];
+  const BodyLoads loads = loads_of(model, state, link.body);
+  const Group& group = body.groups[link.group];
+  for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+    const double* x = &body.position[4 * p];
+    Vector3 force{};
+    if (!body.loads.empty())
+      for (int k = 0; k < loads.count; ++k)
+        if (body.loads[p] >> k & 1)
+          for (int c = 0; c < 3; ++c) force[c] += x[3] * loads.per_mass[k][c];
+    if (!body.force.empty())
+      for (int c = 0; c < 3; ++c) force[c] += body.force[4 * p + c];
+    if (force == Vector3{}) continue;
+    for_particle_nodes(model, workspace, link, x, [&](NodeRecord& node, double weight) {
+      for (int c = 0; c < 3; ++c) node.f[c] += weight * force[c];
+    });
+  }
+}
+
+void measure_loads(const Model& model, const State& state, Workspace& workspace, std::int32_t index, double dt) {
+  const GroupLinks& link = workspace.links[index];
+  const BodyState& body = state.bodies[link.body];
+  const BodyLoads loads = loads_of(model, state, link.body);
+  const Group& group = body.groups[link.group];
+  LoadSums* sums = &workspace.load_sums[static_cast<std::size_t>(link.first_load_sum)];
+  for (int k = 0; k <= loads.count; ++k) sums[k] = {};
+  for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+    if ((body.loads.empty() || body.loads[p] == 0) && body.force.empty()) continue;
+    const double* x = &body.position[4 * p];
+    Vector3 mean{};
+    for_particle_nodes(model, workspace, link, x, [&](const NodeRecord& node, double weight) {
+      for (int c = 0; c < 3; ++c) mean[c] += weight * (node.v[c] - 0.5 * dt * node.f[c]);
+    });
+    const auto add = [&](LoadSums& sum, const Vector3& force) {
+      for (int c = 0; c < 3; ++c) {
+        sum.force[c] += force[c];
+        sum.work += dt * force[c] * mean[c];
+      }
+    };
+    if (!body.loads.empty())
+      for (int k = 0; k < loads.count; ++k)
+        if (body.loads[p] >> k & 1)
+          add(sums[k], {x[3] * loads.per_mass[k][0], x[3] * loads.per_mass[k][1], x[3] * loads.per_mass[k][2]});
+    if (!body.force.empty()) add(sums[loads.count], {body.force[4 * p], body.force[4 * p + 1], body.force[4 * p + 2]});
+  }
+}
+
+void book_loads(const Model& model, State& state, const Workspace& workspace, double dt) {
+  for (std::size_t i = 0; i < state.loads.size(); ++i)
+    if (model.loads[i].on_particles()) state.loads[i].force = {};
+  for (const GroupLinks& link : workspace.links) {
+    if (!particles_loaded(state.bodies[link.body])) continue;
+    const BodyLoads loads = loads_of(model, state, link.body);
+    for (int k = 0; k <= loads.count; ++k) {
+      const LoadSums& sums = workspace.load_sums[static_cast<std::size_t>(link.first_load_sum + k)];
+      for (int c = 0; c < 3; ++c) state.ledger.external_impulse[c] += sums.force[c] * dt;
+      state.ledger.external_work += sums.work;
+      if (k == loads.count) continue;
+      LoadState& load = state.loads[loads.load[k]];
+      for (int c = 0; c < 3; ++c) load.force[c] += sums.force[c];
+      load.work += sums.work;
+    }
+  }
+  for (std::size_t i = 0; i < state.loads.size(); ++i)
+    if (model.loads[i].on_particles())
+      for (int c = 0; c < 3; ++c) state.loads[i].impulse[c] += state.loads[i].force[c] * dt;
+}
+
+void apply_driven_velocities(const Model& model, State& state, Workspace& workspace, double dt) {
+  for (std::size_t i = 0; i < state.loads.size(); ++i)
+    if (!model.loads[i].on_particles()) state.loads[i].force = {};
+  for (const DrivenNode& driven : workspace.driven) {
+    NodeRecord& node = workspace.nodes[driven.node];
+    if (!(node.v[3] > 0)) continue;
+    LoadState& load = state.loads[driven.load];
+    for (int c = 0; c < 3; ++c) {
+      if (!(model.loads[driven.load].axes >> c & 1)) continue;
+      const double impulse = node.v[3] * (load.value[c] - node.f[c]);
+      const double work = 0.5 * impulse * (node.v[c] + load.value[c]);
+      node.f[c] = load.value[c];
+      load.force[c] += impulse / dt;
+      load.impulse[c] += impulse;
+      load.work += work;
+      state.ledger.external_impulse[c] += impulse;
+      state.ledger.external_work += work;
+    }
+  }
+}
+
+}  // namespace ogive

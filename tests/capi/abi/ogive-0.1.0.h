@@ -1,0 +1,501 @@
+/* Ogive: explicit three-dimensional material point method for impact and penetration.
+ *
+ * This header is the manual of the C interface. A host builds a world in this order:
+ *
+ *   ogive_world_create          an empty world; every later message belongs to it
+ *   ogive_world_set_grid        cell size, domain, boundary of each face
+ *   ogive_world_set_numerics    shape function, time-step factor, threads      (optional)
+ *   ogive_world_set_contact     contact method for all pairs of bodies         (optional)
+ *   ogive_material_add          materials
+ *   ogive_body_add_*            bodies, each of one material
+ *   ogive_contact_set_pair      friction and normal of one pair                (optional)
+ *   ogive_world_prepare         checks the whole model once and freezes it
+ *   ogive_world_step / ogive_world_advance
+ *
+ * Units      any consistent set; nothing here carries units of its own. With mm, ms and g: stress in MPa, speed in
+ *            m/s, energy in mJ, specific heat in J/(kg K). Each field names its dimension in [brackets]:
+ *            L length, T time, M mass, K temperature, - none.
+ * Structs    every definition struct starts with struct_size. Fill it by its *_init function, which takes sizeof of the
+ *            struct as the caller was compiled, then change what differs from the defaults. Fields are only ever
+ *            appended.
+ * Errors     every function returns an ogive_status; OGIVE_OK is 0. Otherwise nothing was changed and
+ *            ogive_world_message names the field, the value and what was expected. The library never prints, exits,
+ *            raises a signal or lets an exception out.
+ * Threads    one caller per world at a time; different worlds may be used from different threads at once.
+ * Ownership  the library copies everything it is given. Pointers that it returns say how long they live.
+ * Text       UTF-8, zero-terminated.
+ */
+#ifndef OGIVE_H
+#define OGIVE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(OGIVE_BUILDING) && defined(__GNUC__)
+#define OGIVE_API __attribute__((visibility("default")))
+#else
+#define OGIVE_API
+#endif
+
+#define OGIVE_VERSION_MAJOR 0
+#define OGIVE_VERSION_MINOR 1
+#define OGIVE_VERSION_PATCH 0
+
+/* ------------------------------------------------------------------------------------------------ status, ids, names */
+
+typedef int32_t ogive_status;
+enum {
+  OGIVE_OK = 0,
+  OGIVE_ERROR_ARGUMENT = 1,      /* a value outside its range, a null pointer, a wrong struct_size, an unknown name or id */
+  OGIVE_ERROR_STATE = 2,         /* a call in the wrong order (for example a step before ogive_world_prepare) */
+  OGIVE_ERROR_MEMORY = 3,        /* memory could not be had; the world is as it was before the call */
+  OGIVE_ERROR_NUMERICAL = 4,     /* the run broke down: NaN, inverted volume, runaway particle, collapsed time step */
+  OGIVE_ERROR_FILE = 5,          /* a file cannot be read or written */
+  OGIVE_ERROR_FORMAT = 6,        /* a file is damaged, foreign or of an unknown version */
+  OGIVE_ERROR_INTERNAL = 7       /* a defect in the library: please report it with the message */
+};
+
+typedef struct ogive_world ogive_world; /* opaque */
+typedef struct ogive_material_id { int32_t index; } ogive_material_id; /* 0-based; -1 is none */
+typedef struct ogive_body_id { int32_t index; } ogive_body_id;         /* 0-based; -1 is none */
+
+/* "0.1.0"; lives for ever. */
+OGIVE_API const char* ogive_version(void);
+/* A short English name of a status; lives for ever. */
+OGIVE_API const char* ogive_status_name(ogive_status status);
+
+/* ------------------------------------------------------------------------------------------------------------- world */
+
+/* Makes an empty world. *world is set to NULL on failure (only OGIVE_ERROR_MEMORY or _ARGUMENT). Destroy it once. */
+OGIVE_API ogive_status ogive_world_create(ogive_world** world);
+/* Releases everything; NULL is allowed. */
+OGIVE_API void ogive_world_destroy(ogive_world* world);
+/* Message of the last call on this world that failed, "" if none. Valid until the next call on the world. */
+OGIVE_API const char* ogive_world_message(const ogive_world* world);
+/* Sets the message of the world (NULL: "") and returns status; for companion libraries and hosts. */
+OGIVE_API ogive_status ogive_world_report(ogive_world* world, ogive_status status, const char* message);
+
+/* Boundary of a domain face. */
+enum {
+  OGIVE_FACE_FREE = 0,     /* nothing acts there; a particle that crosses is removed and its mass, momentum, energy booked */
+  OGIVE_FACE_SYMMETRY = 1, /* mirror plane: normal velocity zero, the mirrored material is part of every nodal sum;
+                              bodies given whole are cut there (a particle whose centre lies on the plane keeps half) */
+  OGIVE_FACE_FIXED = 2     /* velocity zero */
+};
+
+/* The background grid. */
+typedef struct ogive_grid_def {
+  uint32_t struct_size;
+  uint32_t reserved0;
+  double cell_size;     /* [L] > 0; no default */
+  double domain_min[3]; /* [L] lower corner; a grid node lies there. No default */
+  double domain_max[3]; /* [L] upper corner, > domain_min. Where the face is symmetry or fixed, (max - min) must be a
+                           whole number of cells (to 1e-6 of a cell) so that the face holds nodes. No default */
+  int32_t face[6];      /* OGIVE_FACE_*: x min, x max, y min, y max, z min, z max. Default free */
+} ogive_grid_def;
+OGIVE_API void ogive_grid_def_init(ogive_grid_def* def, size_t size);
+OGIVE_API ogive_status ogive_world_set_grid(ogive_world* world, const ogive_grid_def* def);
+
+/* Shape functions. */
+enum {
+  OGIVE_SHAPE_LINEAR = 0,           /* trilinear, 8 nodes */
+  OGIVE_SHAPE_QUADRATIC_BSPLINE = 1 /* quadratic B-spline, 27 nodes */
+};
+
+/* How velocity travels between particles and grid. */
+enum {
+  OGIVE_TRANSFER_FLIP = 0,        /* particles take the change of the grid's velocity, Huang et al. 2010 Eq. (34) */
+  OGIVE_TRANSFER_AFFINE_FLIP = 1, /* the same, and each particle gives the grid the velocity field around it, v + C (x - x_p),
+                                     with C from the grid's last velocity (Jiang et al. 2015): without the noise of FLIP
+                                     below the grid's resolution, at the price of some energy (transfer_dissipation) */
+  OGIVE_TRANSFER_APIC = 2         /* particles take the grid's velocity itself and C (Jiang et al. 2015) */
+};
+/* When stress is updated. */
+enum {
+  OGIVE_UPDATE_STRESS_FIRST = 0, /* USF, the papers' order: at the beginning of the step */
+  OGIVE_UPDATE_STRESS_LAST = 1   /* MUSL: at the end, from the new velocities mapped once more; a third dearer. With
+                                    trilinear functions it prevents pressures that grow in particles lying at nodes */
+};
+
+typedef struct ogive_numerics_def {
+  uint32_t struct_size;
+  int32_t shape_function;   /* OGIVE_SHAPE_*. Default quadratic B-spline */
+  double time_step_factor;  /* [-] alpha of Huang et al. 2010 Eq. (35), 0 < alpha <= 1.5. Default 0.5: with affine
+                               velocities a lone particle is stable below 0.58 to 0.73, with FLIP B-splines bear 0.8 */
+  double maximum_time_step; /* [T] upper limit, > 0; infinity allowed. Default infinity */
+  int32_t threads;          /* 1..1024, 0: all processors that this process may use. Results do not depend on it. Default 1 */
+  int32_t reserved0;
+  double gravity[3];        /* [L/T2] body force per mass on every body. Default 0 */
+  int32_t transfer;         /* OGIVE_TRANSFER_*. Default affine FLIP */
+  int32_t update_order;     /* OGIVE_UPDATE_*. Default stress first */
+  double pic_fraction;      /* [-] 0..1: part of the grid's own velocity in a particle's new one, each step. Default 0; APIC
+                               has 1 whatever stands here */
+} ogive_numerics_def;
+OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
+OGIVE_API ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_def* def);
+/* Changes the thread count at any time; results do not depend on it. */
+OGIVE_API ogive_status ogive_world_set_threads(ogive_world* world, int32_t threads);
+
+/* A part of space whose grid nodes are held at rest (a clamp). */
+enum {
+  OGIVE_REGION_BOX = 0,             /* point a .. point b, a <= b */
+  OGIVE_REGION_OUTSIDE_CYLINDER = 1 /* farther than radius from the line through a along direction b */
+};
+typedef struct ogive_clamp_def {
+  uint32_t struct_size;
+  int32_t region;       /* OGIVE_REGION_*. Default box */
+  double a[3];          /* [L] */
+  double b[3];          /* [L] for a box, [-] for a direction */
+  double radius;        /* [L] > 0 for a cylinder */
+  ogive_body_id body;   /* the body that is held; index -1: all. Default all */
+  int32_t axes;         /* bit 0 x, bit 1 y, bit 2 z: velocity components that are held. Default 7 */
+} ogive_clamp_def;
+OGIVE_API void ogive_clamp_def_init(ogive_clamp_def* def, size_t size);
+OGIVE_API ogive_status ogive_clamp_add(ogive_world* world, const ogive_clamp_def* def);
+
+/* --------------------------------------------------------------------------------------------------------- materials */
+
+/* Deviatoric response. */
+enum {
+  OGIVE_STRENGTH_ELASTIC = 0,     /* linear elastic deviator, objective rate */
+  OGIVE_STRENGTH_NEO_HOOKEAN = 1, /* compressible neo-Hookean from the deformation gradient; it brings its own pressure,
+                                     so eos must be linear and bulk modulus K and shear modulus G come from E and nu
+                                     or from bulk_modulus and shear_modulus */
+  OGIVE_STRENGTH_J2_POWER = 2,    /* von Mises, yield stress A + B eps_p^n, Huang et al. 2010 Eq. (37) */
+  OGIVE_STRENGTH_JOHNSON_COOK = 3 /* (A + B eps_p^n)(1 + C ln eps_rate*)(1 - T*^m), Huang et al. 2010 Eq. (39) */
+};
+/* Pressure. */
+enum {
+  OGIVE_EOS_LINEAR = 0,         /* p = -K ln J: bulk modulus constant in the logarithmic volume strain */
+  OGIVE_EOS_MIE_GRUNEISEN = 1   /* Huang et al. 2010 Eq. (38) */
+};
+/* Failure. */
+enum {
+  OGIVE_FAILURE_NONE = 0,
+  OGIVE_FAILURE_PLASTIC_STRAIN = 1 /* at eps_p >= failure_strain: deviator zero, tension zero, compression kept */
+};
+
+typedef struct ogive_material_def {
+  uint32_t struct_size;
+  int32_t strength;            /* OGIVE_STRENGTH_*. Default elastic */
+  int32_t eos;                 /* OGIVE_EOS_*. Default linear */
+  int32_t failure;             /* OGIVE_FAILURE_*. Default none */
+  double density;              /* [M/L3] > 0 at rest. No default */
+  /* Elastic constants: either Young's modulus and Poisson ratio, or bulk and shear modulus; the other two stay 0. */
+  double youngs_modulus;       /* [M/(L T2)] > 0 */
+  double poisson_ratio;        /* [-] -1 < nu < 0.5 */
+  double bulk_modulus;         /* [M/(L T2)] > 0 */
+  double shear_modulus;        /* [M/(L T2)] >= 0 */
+  /* Yield stress (J2 power law and Johnson-Cook). */
+  double yield_stress;         /* A [M/(L T2)] > 0 */
+  double hardening_modulus;    /* B [M/(L T2)] >= 0. Default 0 */
+  double hardening_exponent;   /* n [-] > 0. Default 1 */
+  double rate_coefficient;     /* C [-] >= 0. Default 0: no rate work is done */
+  double reference_strain_rate;/* [1/T] > 0. Default 1 */
+  double thermal_exponent;     /* m [-] > 0; 0: no thermal softening and no temperature kept. Default 0 */
+  double melt_temperature;     /* [K] > room_temperature, where m > 0 */
+  double room_temperature;     /* [K] >= 0. Default 293 */
+  double specific_heat;        /* [L2/(T2 K)] > 0, where m > 0 */
+  double taylor_quinney;       /* part of the plastic work that heats, 0..1. Default 1 */
+  /* Mie-Grueneisen. */
+  double eos_sound_speed;      /* c0 [L/T] > 0 */
+  double eos_slope;            /* s [-] >= 0 */
+  double gruneisen;            /* gamma0 [-] >= 0 */
+  /* Failure. */
+  double failure_strain;       /* [-] > 0 where failure is by plastic strain */
+  /* Bulk viscosity q = rho h |d| (c_q h |d| + c_l c) where the volume shrinks at rate d. Default 0: no work is done. */
+  double viscosity_linear;     /* c_l [-] >= 0 */
+  double viscosity_quadratic;  /* c_q [-] >= 0 */
+} ogive_material_def;
+OGIVE_API void ogive_material_def_init(ogive_material_def* def, size_t size);
+/* name: 1..63 characters, unique among materials; used in messages. */
+OGIVE_API ogive_status ogive_material_add(ogive_world* world, const char* name, const ogive_material_def* def,
+                                          ogive_material_id* id);
+
+/* ------------------------------------------------------------------------------------------------------------ bodies */
+
+typedef struct ogive_body_def {
+  uint32_t struct_size;
+  ogive_material_id material; /* no default */
+  double velocity[3];         /* [L/T] initial velocity of every particle. Default 0 */
+  double angular_velocity[3]; /* [1/T] initial rotation about angular_centre, added to velocity. Default 0 */
+  double angular_centre[3];   /* [L]. Default 0 */
+} ogive_body_def;
+OGIVE_API void ogive_body_def_init(ogive_body_def* def, size_t size);
+
+/* A body from particles: count >= 1 positions xyz[3 * count] [L] inside the domain and volumes volume[count] [L3] > 0.
+ * Particles beyond a symmetry face are cut off. name: 1..63 characters, unique among bodies. */
+OGIVE_API ogive_status ogive_body_add_particles(ogive_world* world, const char* name, const ogive_body_def* def,
+                                                int64_t count, const double* xyz, const double* volume,
+                                                ogive_body_id* id);
+
+/* Built-in solids. Each is defined in its own axes with the origin at `centre`; axis 3 (z) is the axis of revolution. */
+enum {
+  OGIVE_SOLID_BOX = 0,      /* size[0] x size[1] x size[2], centred */
+  OGIVE_SOLID_CYLINDER = 1, /* size[0] outer radius, size[1] length, size[2] inner radius (0: solid; > 0: a ring), centred */
+  OGIVE_SOLID_SPHERE = 2,   /* size[0] radius */
+  OGIVE_SOLID_OGIVE_ROD = 3 /* tangent-ogive nose: size[0] radius, size[1] overall length, size[2] ogive radius divided by
+                               the diameter (caliber-radius-head, >= 0.5). Tip at the origin, body along -z */
+};
+enum {
+  OGIVE_LATTICE_CARTESIAN = 0, /* centres at (i + 1/2) spacing from the solid's symmetry planes (box: spacing is rounded so
+                                  that whole particles fill each edge) */
+  OGIVE_LATTICE_POLAR = 1      /* cylinder only: rings of equal radial thickness, spacing[0] radial, spacing[1] along the
+                                  circumference at the middle radius, spacing[2] axial; every particle has its exact volume */
+};
+typedef struct ogive_solid_def {
+  uint32_t struct_size;
+  int32_t solid;        /* OGIVE_SOLID_* */
+  int32_t lattice;      /* OGIVE_LATTICE_*. Default Cartesian */
+  int32_t reserved0;
+  double size[3];       /* [L] as above */
+  double centre[3];     /* [L]. Default 0 */
+  double axis[3];       /* [-] direction of the solid's z axis, not zero. Default (0,0,1) */
+  double reference[3];  /* [-] the solid's x axis is this direction's part normal to axis; (0,0,0): chosen. Default 0 */
+  double spacing[3];    /* [L] > 0, in the solid's own axes */
+} ogive_solid_def;
+OGIVE_API void ogive_solid_def_init(ogive_solid_def* def, size_t size);
+/* A body filled from a built-in solid; particle volumes sum to the exact volume of the solid. */
+OGIVE_API ogive_status ogive_body_add_solid(ogive_world* world, const char* name, const ogive_body_def* def,
+                                            const ogive_solid_def* solid, ogive_body_id* id);
+/* The particles such a body would get. First call with xyz = volume = NULL to learn *count, then with room for it. */
+OGIVE_API ogive_status ogive_solid_particles(ogive_world* world, const ogive_solid_def* solid, int64_t* count, double* xyz,
+                                             double* volume);
+
+/* ----------------------------------------------------------------------------------------------------------- contact */
+
+enum {
+  OGIVE_CONTACT_SINGLE_FIELD = 0, /* standard MPM: one velocity field, no slip, no separation */
+  OGIVE_CONTACT_HUANG_FIRST = 1,  /* Huang et al. 2010, section 3.1: on the deformed grid */
+  OGIVE_CONTACT_HUANG_SECOND = 2  /* Huang et al. 2010, section 3.2: also on the redefined grid */
+};
+enum {
+  OGIVE_NORMAL_MASTER = 0, /* the master body's mass gradient, Eq. (9) and choices 1, 2 of section 2.3 */
+  OGIVE_NORMAL_AVERAGE = 1 /* Eq. (10) */
+};
+enum {
+  OGIVE_DETECTION_SHARED_NODE = 0, /* the papers: both bodies reach the node */
+  OGIVE_DETECTION_GAP = 1          /* and the bodies' nearest sides at the node, measured along the normal, are closer than
+                                      gap_offset cells (docs/theory.md) */
+};
+typedef struct ogive_contact_def {
+  uint32_t struct_size;
+  int32_t method;       /* OGIVE_CONTACT_*; one for the whole world, ignored by ogive_contact_set_pair. Default second */
+  int32_t normal;       /* OGIVE_NORMAL_*. Default average */
+  ogive_body_id master; /* with OGIVE_NORMAL_MASTER. In ogive_world_set_contact -1 means: the first body of each pair */
+  double friction;      /* Coulomb coefficient [-] >= 0. Default 0 */
+  int32_t detection;    /* OGIVE_DETECTION_*. Default gap */
+  int32_t reserved0;
+  double gap_offset;    /* [-] cells, -2..2. Default 0.3: at 0 bodies that just touch chatter */
+} ogive_contact_def;
+OGIVE_API void ogive_contact_def_init(ogive_contact_def* def, size_t size);
+/* The rule for all pairs; call before bodies or after, but before ogive_world_prepare. */
+OGIVE_API ogive_status ogive_world_set_contact(ogive_world* world, const ogive_contact_def* def);
+/* Another rule for one pair (either order). */
+OGIVE_API ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id a, ogive_body_id b,
+                                              const ogive_contact_def* def);
+
+/* ------------------------------------------------------------------------------------------------------ stop conditions */
+
+/* Besides the end time. The body's speed is that of its centre of mass. */
+typedef struct ogive_stop_def {
+  uint32_t struct_size;
+  ogive_body_id body;        /* the projectile; -1: no stop condition. Default -1 */
+  double settle_window;      /* [T] > 0: settled when, after the body has lost more than settle_tolerance of its speed, its
+                                speed changes by less than settle_tolerance during this time. 0: not tested. Default 0 */
+  double settle_tolerance;   /* [L/T] > 0 */
+  int32_t stop_when_stopped; /* 1: also when the velocity along the initial direction has fallen to zero. Default 1 */
+  int32_t stop_when_out;     /* 1: also when all its particles have left the domain. Default 1 */
+} ogive_stop_def;
+OGIVE_API void ogive_stop_def_init(ogive_stop_def* def, size_t size);
+OGIVE_API ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def);
+enum {
+  OGIVE_STOP_NONE = 0,    /* still running */
+  OGIVE_STOP_SETTLED = 1,
+  OGIVE_STOP_STOPPED = 2,
+  OGIVE_STOP_OUT = 3
+};
+
+/* -------------------------------------------------------------------------------------------------------------- running */
+
+/* Checks the model once (bodies inside the domain, not overlapping, at least one body, consistent materials and rules)
+ * and freezes it. Afterwards only stepping, state access, thread count and queries are allowed. */
+OGIVE_API ogive_status ogive_world_prepare(ogive_world* world);
+
+/* What is modelled and what is left out, and why: lines of text. Writes at most capacity bytes with the final zero and
+ * sets *needed to the size of the whole text with it. After ogive_world_prepare. */
+OGIVE_API ogive_status ogive_world_plan(const ogive_world* world, char* text, size_t capacity, size_t* needed);
+
+/* Largest stable time step now, Eq. (35) with the fastest wave and particle [T]. */
+OGIVE_API ogive_status ogive_world_stable_time_step(const ogive_world* world, double* dt);
+
+/* One step. dt = 0: the stable time step; otherwise 0 < dt <= stable time step. */
+OGIVE_API ogive_status ogive_world_step(ogive_world* world, double dt);
+
+/* Called after each step; a value other than 0 makes ogive_world_advance return OGIVE_OK at once. It may query the
+ * world and save it, and must not step, load or destroy it. */
+typedef int32_t (*ogive_step_callback)(ogive_world* world, void* user);
+/* Steps until `time` is reached exactly (the last step is shortened), a stop condition holds, max_steps (> 0; 0: no
+ * limit) steps are done or the callback asks for a stop. Stop conditions end it at once if they already hold. */
+OGIVE_API ogive_status ogive_world_advance(ogive_world* world, double time, int64_t max_steps, ogive_step_callback callback,
+                                           void* user);
+
+typedef struct ogive_progress {
+  uint32_t struct_size;
+  int32_t stop;              /* OGIVE_STOP_* */
+  double time;               /* [T] */
+  double last_time_step;     /* [T] */
+  int64_t steps;             /* since the beginning, over restarts */
+  int64_t particles;         /* in the domain now */
+  int64_t particle_steps;    /* sum over steps of particles, over restarts */
+  int64_t memory_bytes;      /* held by the world now */
+} ogive_progress;
+/* struct_size must be set by the caller. Cheap: may be called each step. */
+OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_progress* progress);
+
+/* ------------------------------------------------------------------------------------------------------------ results */
+
+/* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
+ *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation
+ *            + transfer_dissipation - external_work
+ *   residual = total - initial_total; what no term accounts for
+ * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
+ * Particles lose less than that (they carry motion that the grid does not see), so these are indicators and part of no
+ * sum: compare them between runs, not with the residual. */
+typedef struct ogive_ledger {
+  uint32_t struct_size;
+  uint32_t reserved0;
+  double time;                 /* [T] */
+  double mass;                 /* [M] in the domain */
+  double left_domain_mass;     /* [M] */
+  double momentum[3];          /* [M L/T] in the domain */
+  double left_domain_momentum[3];
+  double boundary_impulse[3];  /* [M L/T] given to the material by faces and clamps */
+  double external_impulse[3];  /* by gravity */
+  double kinetic;              /* [M L2/T2] with that of the particles' affine velocities */
+  double internal;             /* elastic + plastic + thermal */
+  double plastic_dissipation;  /* plastic work done so far; part of internal */
+  double viscous_dissipation;  /* bulk viscosity work so far; part of internal */
+  double failure_loss;         /* elastic energy removed from failed particles */
+  double left_domain_energy;   /* kinetic + internal of removed particles */
+  double friction_dissipation; /* energy turned to heat by Coulomb friction at nodes */
+  double transfer_dissipation; /* kinetic energy that affine velocities or mixing in the grid's velocity took out: motion
+                                  below the grid's resolution. 0 to round-off with plain FLIP */
+  double contact_work;         /* kinetic energy of the grid taken (< 0) by the normal contact forces */
+  double boundary_work;        /* likewise by faces and clamps */
+  double external_work;        /* by gravity */
+  double initial_total;
+  double total;
+  double residual;
+  double residual_relative;    /* residual / initial_total (0 where that is 0) */
+  double maximum_speed;        /* [L/T] fastest particle now */
+  double maximum_speed_ever;   /* [L/T] fastest particle in any step so far */
+} ogive_ledger;
+OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);
+
+OGIVE_API int32_t ogive_body_count(const ogive_world* world);
+/* Name of a body; lives as long as the world. NULL if the id is unknown. */
+OGIVE_API const char* ogive_body_name(const ogive_world* world, ogive_body_id body);
+OGIVE_API ogive_status ogive_body_find(const ogive_world* world, const char* name, ogive_body_id* body);
+
+typedef struct ogive_body_result {
+  uint32_t struct_size;
+  uint32_t reserved0;
+  int64_t particles;            /* in the domain */
+  int64_t failed_particles;     /* failed so far, whether still in the domain or not */
+  int64_t left_domain;          /* removed at free faces */
+  double mass;                  /* [M] in the domain */
+  double failed_mass;           /* [M] */
+  double left_domain_mass;      /* [M] */
+  double first_failure_time;    /* [T], -1 if none failed */
+  double failure_loss;          /* [M L2/T2] */
+  double centre[3];             /* [L] centre of mass */
+  double momentum[3];           /* [M L/T] */
+  double velocity[3];           /* [L/T] momentum / mass */
+  double speed;                 /* [L/T] |velocity| */
+  double initial_speed;         /* [L/T] */
+  double kinetic;               /* [M L2/T2] */
+  double internal;              /* [M L2/T2] */
+  double contact_force[3];      /* [M L/T2] on the body in the last step */
+  double lower[3], upper[3];    /* [L] bounding box of particle centres */
+  double maximum_plastic_strain;/* [-] */
+  double maximum_temperature;   /* [K], 0 where none is kept */
+} ogive_body_result;
+OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id body, ogive_body_result* result);
+
+/* Particle fields by name. Values are ordered by particle number (the order in which the body's particles were given,
+ * those cut off at symmetry planes or removed left out), components of a particle together. All are double.
+ *   position 3, velocity 3, mass 1, volume 1 (current), stress 6 (xx yy zz yz xz xy, tension positive),
+ *   pressure 1, von_mises 1, energy 1 (internal, per particle), plastic_strain 1, temperature 1, failed 1 (0 or 1),
+ *   number 1 (0-based particle number), deformation_gradient 9 (row by row), affine_velocity 9 (dv_i/dx_j of the particle's
+ *   own velocity field, row by row; its kinetic energy is mass h^2/8 times the sum of the squares)
+ * A body has only the fields that its material and the transfer need: asking for another is OGIVE_ERROR_ARGUMENT. */
+OGIVE_API int32_t ogive_field_count(const ogive_world* world, ogive_body_id body);
+/* Name (lives as long as the world) and components of field `index`, NULL if out of range. */
+OGIVE_API const char* ogive_field_name(const ogive_world* world, ogive_body_id body, int32_t index, int32_t* components);
+/* Copies field `name` of all particles of a body now in the domain; count: the number of doubles that `values` holds,
+ * which must be particles * components. */
+OGIVE_API ogive_status ogive_field_get(const ogive_world* world, ogive_body_id body, const char* name, double* values,
+                                       int64_t count);
+/* Sets velocity, affine_velocity, stress, energy, plastic_strain or temperature in the same layout. Setting one leaves the
+ * others as they are: who sets velocity may want to set affine_velocity too. */
+OGIVE_API ogive_status ogive_field_set(ogive_world* world, ogive_body_id body, const char* name, const double* values,
+                                       int64_t count);
+
+/* ------------------------------------------------------------------------------------------------- save and load a world */
+
+/* Bytes that a host keeps with the world and that travel in every save: name 1..63 characters; size 0 removes it. */
+OGIVE_API ogive_status ogive_world_attach(ogive_world* world, const char* name, const void* data, int64_t size);
+/* *data lives until the attachment changes. OGIVE_ERROR_ARGUMENT if there is none of that name. */
+OGIVE_API ogive_status ogive_world_attachment(const ogive_world* world, const char* name, const void** data, int64_t* size);
+
+/* A save is a set of named arrays ("model/..." what a step only reads, "state/..." all that it changes, "attachment/...").
+ * The host (or the library ogive_io) writes them where it likes. Element types: */
+enum { OGIVE_TYPE_FLOAT64 = 1, OGIVE_TYPE_INT32 = 2, OGIVE_TYPE_INT64 = 3, OGIVE_TYPE_UINT8 = 4 };
+typedef struct ogive_writer {
+  uint32_t struct_size;
+  uint32_t reserved0;
+  void* user;
+  /* Takes one array of `count` elements; data lives during the call. Not OGIVE_OK: the save ends with that status. */
+  ogive_status (*put)(void* user, const char* name, int32_t type, int64_t count, const void* data);
+} ogive_writer;
+typedef struct ogive_reader {
+  uint32_t struct_size;
+  uint32_t reserved0;
+  void* user;
+  /* Type and element count of a named array; OGIVE_ERROR_FORMAT if there is none. */
+  ogive_status (*find)(void* user, const char* name, int32_t* type, int64_t* count);
+  /* Copies it; `count` is what find said. */
+  ogive_status (*get)(void* user, const char* name, int64_t count, void* data);
+} ogive_reader;
+OGIVE_API ogive_status ogive_world_save(const ogive_world* world, const ogive_writer* writer);
+/* Into a world fresh from ogive_world_create. Afterwards it is prepared and continues to the same bits as the saved one.
+ * On failure the world is as fresh as before. Every count is checked against the model before memory is taken. */
+OGIVE_API ogive_status ogive_world_load(ogive_world* world, const ogive_reader* reader);
+
+/* ------------------------------------------------------------------------------------- files (link the library ogive_io) */
+
+/* HDF5 checkpoint (docs/formats.md): written under a temporary name in the same directory, flushed to disk and renamed, so
+ * that `path` is either the old file, whole, or the new one, whole. */
+OGIVE_API ogive_status ogive_checkpoint_write(ogive_world* world, const char* path);
+/* Into a fresh world; every checksum is verified first. */
+OGIVE_API ogive_status ogive_checkpoint_read(ogive_world* world, const char* path);
+/* Checks a checkpoint or particle file without loading it: all datasets readable and their checksums right. Writes one line
+ * per finding into text as ogive_world_plan does. OGIVE_OK: undamaged. */
+OGIVE_API ogive_status ogive_file_verify(const char* path, char* text, size_t capacity, size_t* needed);
+/* What the file is and holds: lines of text. */
+OGIVE_API ogive_status ogive_file_info(const char* path, char* text, size_t capacity, size_t* needed);
+/* Particles of all bodies now, as an HDF5 file of groups /<body>/<field>; atomic as a checkpoint. */
+OGIVE_API ogive_status ogive_particles_write(ogive_world* world, const char* path);
+/* An XDMF time series over `count` such files (paths relative to the XDMF file), for ParaView; atomic. The counts and fields
+ * are read from the files. */
+OGIVE_API ogive_status ogive_series_write(ogive_world* world, const char* path, int32_t count, const char* const* files);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
