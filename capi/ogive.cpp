@@ -148,7 +148,7 @@ template <class Def>
 void initialise(Def* def, size_t size, const Def& defaults) {
   if (!def) return;
   const std::size_t known = std::min(size, sizeof(Def));
-  std::memset(static_cast<void*>(def), 0, known);
+  std::memset(static_cast<void*>(def), 0, size);  // what a newer caller knows alone is zero, and not looked at
   std::memcpy(static_cast<void*>(def), &defaults, known);
   const std::uint32_t stored = static_cast<std::uint32_t>(known);
   if (known >= sizeof stored) std::memcpy(static_cast<void*>(def), &stored, sizeof stored);

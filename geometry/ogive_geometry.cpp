@@ -62,22 +62,34 @@ void expect_pointer(const T* pointer, const char* name) {
   if (!pointer) refuse(std::string(name) + " is NULL: expected a valid pointer");
 }
 
+// A struct of the caller's size must be one that this library knows: its own or an older, shorter one.
 template <class Def>
 void expect_size(const Def* def, const char* name) {
   expect_pointer(def, name);
-  if (def->struct_size != sizeof(Def)) {
-    refuse(std::string(name) + "->struct_size = " + std::to_string(def->struct_size) + ": expected " +
-           std::to_string(sizeof(Def)) + ", as its init function sets it");
+  if (def->struct_size < 2 * sizeof(uint32_t) || def->struct_size > sizeof(Def)) {
+    refuse(std::string(name) + "->struct_size = " + std::to_string(def->struct_size) + ": expected at most " +
+           std::to_string(sizeof(Def)) + ", the size of the struct");
   }
 }
 
-// Fills a definition of the caller's size, which may be another version's, with defaults.
+// The caller's definition in our size: what an older caller does not know stays at its default.
+template <class Def, class Init>
+Def complete(const Def* def, const char* name, Init set_defaults) {
+  expect_size(def, name);
+  Def full;
+  set_defaults(&full, sizeof full);
+  std::memcpy(static_cast<void*>(&full), def, def->struct_size);
+  return full;
+}
+
+// Fills what the caller and this library both know of a definition with defaults, what the caller knows alone with zeros.
 template <class Def>
 void init(Def* def, size_t size, Def defaults) noexcept {
   if (!def || size < sizeof defaults.struct_size) return;
-  defaults.struct_size = static_cast<uint32_t>(size);
+  const size_t known = std::min(size, sizeof defaults);
+  defaults.struct_size = static_cast<uint32_t>(known);
   std::memset(static_cast<void*>(def), 0, size);
-  std::memcpy(static_cast<void*>(def), &defaults, std::min(size, sizeof defaults));
+  std::memcpy(static_cast<void*>(def), &defaults, known);
 }
 
 // Takes a new surface in place of the old one; nothing here throws.
@@ -119,11 +131,11 @@ void ogive_mesh_read_def_init(ogive_mesh_read_def* def, size_t size) {
 ogive_status ogive_mesh_read(ogive_mesh* mesh, const char* path, const ogive_mesh_read_def* def) {
   return run(mesh, [&] {
     expect_pointer(path, "path");
-    expect_size(def, "def");
-    if (!(def->scale > 0 && std::isfinite(def->scale))) {
-      refuse("scale = " + text_of(def->scale) + ": expected a finite number > 0");
+    const ogive_mesh_read_def full = complete(def, "def", ogive_mesh_read_def_init);
+    if (!(full.scale > 0 && std::isfinite(full.scale))) {
+      refuse("scale = " + text_of(full.scale) + ": expected a finite number > 0");
     }
-    take(*mesh, ogive::geometry::read_surface(path, def->scale));
+    take(*mesh, ogive::geometry::read_surface(path, full.scale));
   });
 }
 
@@ -184,7 +196,7 @@ ogive_status ogive_mesh_info_get(const ogive_mesh* mesh, ogive_mesh_info* info) 
     expect_size(info, "info");
     expect_filled(*mesh);
     const uint32_t size = info->struct_size;
-    *info = mesh->info;
+    std::memcpy(static_cast<void*>(info), &mesh->info, size);
     info->struct_size = size;
   });
 }
@@ -198,14 +210,14 @@ void ogive_voxelise_def_init(ogive_voxelise_def* def, size_t size) {
 ogive_status ogive_mesh_voxelise(const ogive_mesh* mesh, const ogive_voxelise_def* def, int64_t* count, double* xyz,
                                  double* volume) {
   return run(mesh, [&] {
-    expect_size(def, "def");
+    const ogive_voxelise_def full = complete(def, "def", ogive_voxelise_def_init);
     expect_pointer(count, "count");
     if (!xyz != !volume) refuse("xyz and volume: expected both NULL or neither");
     expect_filled(*mesh);
     if (!mesh->info.checked) {
       throw Refusal(OGIVE_ERROR_STATE, "the mesh was not accepted: call ogive_mesh_check before ogive_mesh_voxelise");
     }
-    const std::vector<double> positions = ogive::geometry::voxelise(mesh->surface, *def);
+    const std::vector<double> positions = ogive::geometry::voxelise(mesh->surface, full);
     const auto particles = static_cast<int64_t>(positions.size() / 3);
     if (!xyz) {
       *count = particles;

@@ -169,7 +169,10 @@ std::string hdf5_reason() {
   H5Ewalk2(
       H5E_DEFAULT, H5E_WALK_UPWARD,
       [](unsigned number, const H5E_error2_t* error, void* text) -> herr_t {
-        if (number == 0 && error->desc) *static_cast<std::string*>(text) = error->desc;
+        try {
+          if (number == 0 && error->desc) *static_cast<std::string*>(text) = error->desc;
+        } catch (...) {  // no memory for the reason: it stays unknown
+        }
         return 0;
       },
       &reason);

@@ -15,6 +15,7 @@ namespace ogive::io {
 namespace {
 
 std::mutex hdf5_mutex;
+bool out_of_memory = false;  // HDF5 does not pass this on; under the mutex
 
 struct DriverSettings {  // travels in the file access property list
   AtomicFile* file;
@@ -32,7 +33,9 @@ const Driver* driver_of(const H5FD_t* base) { return reinterpret_cast<const Driv
 H5FD_t* driver_open(const char*, unsigned, hid_t access, haddr_t) {
   const auto* settings = static_cast<const DriverSettings*>(H5Pget_driver_info(access));
   if (!settings) return nullptr;
-  return reinterpret_cast<H5FD_t*>(new (std::nothrow) Driver{H5FD_t{}, settings->file, 0});
+  Driver* const driver = new (std::nothrow) Driver{H5FD_t{}, settings->file, 0};
+  if (!driver) out_of_memory = true;
+  return reinterpret_cast<H5FD_t*>(driver);
 }
 
 herr_t driver_close(H5FD_t* base) {
@@ -129,6 +132,7 @@ Hdf5Session::~Hdf5Session() {
 }
 
 hid_t create_hdf5(AtomicFile& file, hsize_t userblock) {
+  out_of_memory = false;
   const hid_t driver = register_driver();
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
@@ -142,6 +146,7 @@ hid_t create_hdf5(AtomicFile& file, hsize_t userblock) {
   if (creation >= 0) H5Pclose(creation);
   if (access >= 0) H5Pclose(access);
   if (driver >= 0) H5FDunregister(driver);  // the open file holds it as long as it needs it
+  if (result < 0 && out_of_memory) throw std::bad_alloc();
   return result;
 }
 

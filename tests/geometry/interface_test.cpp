@@ -44,7 +44,7 @@ TEST(MeshInterface, InitFunctionsSetDefaultsForTheCallersSize) {
   } larger;
   std::memset(&larger, 0x55, sizeof larger);
   ogive_voxelise_def_init(&larger.def, sizeof larger);
-  EXPECT_EQ(larger.def.struct_size, sizeof larger);
+  EXPECT_EQ(larger.def.struct_size, sizeof larger.def) << "what this library knows of it";
   EXPECT_EQ(larger.def.axis[2], 1);
   EXPECT_EQ(larger.newer[3], 0) << "fields this library does not know are zero";
   struct {
@@ -63,10 +63,10 @@ TEST(MeshInterface, WrongStructSizesAreRefused) {
   ogive_mesh_read_def_init(&read, sizeof read);
   ogive_voxelise_def def = lattice(0.5);
   int64_t count = -7;
-  for (uint32_t wrong : {0u, 8u, 4096u}) {
+  for (uint32_t wrong : {0u, 4u, 4096u}) {
     read.struct_size = def.struct_size = wrong;
     EXPECT_EQ(ogive_mesh_read(mesh.get(), "x", &read), OGIVE_ERROR_ARGUMENT);
-    EXPECT_EQ(lacks(mesh.message(), {"def->struct_size = " + std::to_string(wrong), "expected 16"}), "");
+    EXPECT_EQ(lacks(mesh.message(), {"def->struct_size = " + std::to_string(wrong), "expected at most "}), "");
     EXPECT_EQ(ogive_mesh_voxelise(mesh.get(), &def, &count, nullptr, nullptr), OGIVE_ERROR_ARGUMENT);
     ogive_mesh_info info{};
     info.struct_size = wrong;
