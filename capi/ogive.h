@@ -38,21 +38,23 @@
 extern "C" {
 #endif
 
+/* Marks what the libraries export. */
 #if defined(OGIVE_BUILDING) && defined(__GNUC__)
 #define OGIVE_API __attribute__((visibility("default")))
 #else
 #define OGIVE_API
 #endif
 
-#define OGIVE_VERSION_MAJOR 0
-#define OGIVE_VERSION_MINOR 2
-#define OGIVE_VERSION_PATCH 0
+#define OGIVE_VERSION_MAJOR 0 /* version of this header: the soname's number */
+#define OGIVE_VERSION_MINOR 2 /* grows with additions */
+#define OGIVE_VERSION_PATCH 0 /* grows with corrections */
 /* Grows by one whenever functions, fields or choices are appended; nothing is ever removed or given another meaning while the
  * major version stays. Version 0.1.0 had 1. */
 #define OGIVE_ABI 2
 
 /* ------------------------------------------------------------------------------------------------ status, ids, names */
 
+/* What every call returns: OGIVE_OK or OGIVE_ERROR_*. */
 typedef int32_t ogive_status;
 enum {
   OGIVE_OK = 0,
@@ -67,9 +69,18 @@ enum {
 };
 
 typedef struct ogive_world ogive_world; /* opaque */
-typedef struct ogive_material_id { int32_t index; } ogive_material_id; /* 0-based; -1 is none */
-typedef struct ogive_body_id { int32_t index; } ogive_body_id;         /* 0-based; -1 is none */
-typedef struct ogive_load_id { int32_t index; } ogive_load_id;         /* 0-based; -1 is none */
+/* A material of a world. */
+typedef struct ogive_material_id {
+  int32_t index; /* 0-based; -1 is none */
+} ogive_material_id;
+/* A body of a world. */
+typedef struct ogive_body_id {
+  int32_t index; /* 0-based; -1 is none */
+} ogive_body_id;
+/* A load of a world. */
+typedef struct ogive_load_id {
+  int32_t index; /* 0-based; -1 is none */
+} ogive_load_id;
 
 /* Such as "0.2.0"; lives for ever. */
 OGIVE_API const char* ogive_version(void);
@@ -121,6 +132,7 @@ typedef struct ogive_grid_def {
   int32_t face[6];      /* OGIVE_FACE_*: x min, x max, y min, y max, z min, z max. Default free */
 } ogive_grid_def;
 OGIVE_API void ogive_grid_def_init(ogive_grid_def* def, size_t size);
+/* Before the bodies; another call replaces the grid. */
 OGIVE_API ogive_status ogive_world_set_grid(ogive_world* world, const ogive_grid_def* def);
 
 /* Shape functions. */
@@ -144,6 +156,7 @@ enum {
                                     trilinear functions it prevents pressures that grow in particles lying at nodes */
 };
 
+/* How the world is computed. */
 typedef struct ogive_numerics_def {
   uint32_t struct_size;
   int32_t shape_function;   /* OGIVE_SHAPE_*. Default quadratic B-spline */
@@ -159,6 +172,7 @@ typedef struct ogive_numerics_def {
                                has 1 whatever stands here */
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
+/* Before ogive_world_prepare; another call replaces them. */
 OGIVE_API ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_def* def);
 /* Changes the thread count at any time; results do not depend on it. */
 OGIVE_API ogive_status ogive_world_set_threads(ogive_world* world, int32_t threads);
@@ -169,6 +183,7 @@ enum {
   OGIVE_REGION_OUTSIDE_CYLINDER = 1, /* farther than radius from the line through a along direction b */
   OGIVE_REGION_EVERYWHERE = 2        /* a, b and radius are not used */
 };
+/* What is held, and where. */
 typedef struct ogive_clamp_def {
   uint32_t struct_size;
   int32_t region;       /* OGIVE_REGION_*. Default box */
@@ -179,6 +194,7 @@ typedef struct ogive_clamp_def {
   int32_t axes;         /* bit 0 x, bit 1 y, bit 2 z: velocity components that are held. Default 7 */
 } ogive_clamp_def;
 OGIVE_API void ogive_clamp_def_init(ogive_clamp_def* def, size_t size);
+/* Before ogive_world_prepare; there may be any number. */
 OGIVE_API ogive_status ogive_clamp_add(ogive_world* world, const ogive_clamp_def* def);
 
 /* Loads beside gravity: what the host applies. */
@@ -189,6 +205,7 @@ enum {
                                   its outermost layer. It keeps its direction (a dead load) */
   OGIVE_LOAD_VELOCITY = 2      /* velocity [L/T] of the body's grid nodes in the region, which stays where it is */
 };
+/* A load. */
 typedef struct ogive_load_def {
   uint32_t struct_size;
   int32_t kind;         /* OGIVE_LOAD_*. Default acceleration */
@@ -231,6 +248,7 @@ enum {
   OGIVE_FAILURE_PLASTIC_STRAIN = 1 /* at eps_p >= failure_strain: deviator zero, tension zero, compression kept */
 };
 
+/* A material; fields that its strength, eos and failure do not need are not looked at. */
 typedef struct ogive_material_def {
   uint32_t struct_size;
   int32_t strength;            /* OGIVE_STRENGTH_*. Default elastic */
@@ -270,6 +288,7 @@ OGIVE_API ogive_status ogive_material_add(ogive_world* world, const char* name, 
 
 /* ------------------------------------------------------------------------------------------------------------ bodies */
 
+/* What a body is made of and how it moves at first. */
 typedef struct ogive_body_def {
   uint32_t struct_size;
   ogive_material_id material; /* no default */
@@ -299,6 +318,7 @@ enum {
   OGIVE_LATTICE_POLAR = 1      /* cylinder only: rings of equal radial thickness, spacing[0] radial, spacing[1] along the
                                   circumference at the middle radius, spacing[2] axial; every particle has its exact volume */
 };
+/* A built-in solid and its lattice of particles. */
 typedef struct ogive_solid_def {
   uint32_t struct_size;
   int32_t solid;        /* OGIVE_SOLID_* */
@@ -334,6 +354,7 @@ enum {
   OGIVE_DETECTION_GAP = 1          /* and the bodies' nearest sides at the node, measured along the normal, are closer than
                                       gap_offset cells (docs/theory.md) */
 };
+/* A rule of contact. */
 typedef struct ogive_contact_def {
   uint32_t struct_size;
   int32_t method;       /* OGIVE_CONTACT_*; one for the whole world, ignored by ogive_contact_set_pair. Default second */
@@ -364,6 +385,7 @@ typedef struct ogive_stop_def {
   int32_t stop_when_out;     /* 1: also when all its particles have left the domain. Default 1 */
 } ogive_stop_def;
 OGIVE_API void ogive_stop_def_init(ogive_stop_def* def, size_t size);
+/* Before ogive_world_prepare; another call replaces it. */
 OGIVE_API ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def);
 enum {
   OGIVE_STOP_NONE = 0,    /* still running */
@@ -397,6 +419,7 @@ typedef int32_t (*ogive_step_callback)(ogive_world* world, void* user);
 OGIVE_API ogive_status ogive_world_advance(ogive_world* world, double time, int64_t max_steps, ogive_step_callback callback,
                                            void* user);
 
+/* Clock and size of a world. */
 typedef struct ogive_progress {
   uint32_t struct_size;
   int32_t stop;              /* OGIVE_STOP_* */
@@ -426,7 +449,7 @@ typedef struct ogive_ledger {
   double mass;                 /* [M] in the domain */
   double left_domain_mass;     /* [M] */
   double momentum[3];          /* [M L/T] in the domain */
-  double left_domain_momentum[3];
+  double left_domain_momentum[3]; /* [M L/T] taken along by removed particles */
   double boundary_impulse[3];  /* [M L/T] given to the material by faces and clamps */
   double external_impulse[3];  /* by gravity, loads and forces of the host */
   double kinetic;              /* [M L2/T2] with that of the particles' affine velocities */
@@ -441,20 +464,24 @@ typedef struct ogive_ledger {
   double contact_work;         /* kinetic energy of the grid taken (< 0) by the normal contact forces */
   double boundary_work;        /* likewise by faces and clamps */
   double external_work;        /* by gravity, loads and forces of the host */
-  double initial_total;
-  double total;
-  double residual;
+  double initial_total;        /* total when the world was prepared */
+  double total;                /* the sum above */
+  double residual;             /* total - initial_total */
   double residual_relative;    /* residual / initial_total (0 where that is 0) */
   double maximum_speed;        /* [L/T] fastest particle now */
   double maximum_speed_ever;   /* [L/T] fastest particle in any step so far */
 } ogive_ledger;
+/* After ogive_world_prepare; a pass over all particles. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);
 
+/* Number of bodies; ids are 0 .. number - 1. 0 for a NULL world. */
 OGIVE_API int32_t ogive_body_count(const ogive_world* world);
 /* Name of a body; lives as long as the world. NULL if the id is unknown. */
 OGIVE_API const char* ogive_body_name(const ogive_world* world, ogive_body_id body);
+/* The body of that name; OGIVE_ERROR_ARGUMENT if there is none. */
 OGIVE_API ogive_status ogive_body_find(const ogive_world* world, const char* name, ogive_body_id* body);
 
+/* A body as a whole. */
 typedef struct ogive_body_result {
   uint32_t struct_size;
   uint32_t reserved0;
@@ -474,12 +501,15 @@ typedef struct ogive_body_result {
   double kinetic;               /* [M L2/T2] */
   double internal;              /* [M L2/T2] */
   double contact_force[3];      /* [M L/T2] on the body in the last step */
-  double lower[3], upper[3];    /* [L] bounding box of particle centres */
+  double lower[3];              /* [L] bounding box of particle centres */
+  double upper[3];              /* [L] */
   double maximum_plastic_strain;/* [-] */
   double maximum_temperature;   /* [K], 0 where none is kept */
 } ogive_body_result;
+/* After ogive_world_prepare; a pass over the particles of the body. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id body, ogive_body_result* result);
 
+/* What a load has done. */
 typedef struct ogive_load_result {
   uint32_t struct_size;
   uint32_t reserved0;
@@ -491,6 +521,7 @@ typedef struct ogive_load_result {
 /* After ogive_world_prepare. */
 OGIVE_API ogive_status ogive_load_result_get(const ogive_world* world, ogive_load_id load, ogive_load_result* result);
 
+/* Contact between two bodies. */
 typedef struct ogive_pair_result {
   uint32_t struct_size;
   uint32_t reserved0;
@@ -528,7 +559,7 @@ OGIVE_API ogive_status ogive_field_set(ogive_world* world, ogive_body_id body, c
 /* A field where the engine keeps it, without a copy. Particles are in the engine's order, some places being padding. */
 typedef struct ogive_field_view {
   uint32_t struct_size;
-  int32_t components;
+  int32_t components;          /* of the field */
   int64_t places;              /* particles and padding */
   int64_t stride;              /* doubles from one place to the next */
   const double* component[9];  /* value c of place i: component[c][i * stride]; NULL beyond `components` */
@@ -550,22 +581,25 @@ OGIVE_API ogive_status ogive_world_attachment(const ogive_world* world, const ch
 /* A save is a set of named arrays ("model/..." what a step only reads, "state/..." all that it changes, "attachment/...").
  * The host (or the library ogive_io) writes them where it likes. Element types: */
 enum { OGIVE_TYPE_FLOAT64 = 1, OGIVE_TYPE_INT32 = 2, OGIVE_TYPE_INT64 = 3, OGIVE_TYPE_UINT8 = 4 };
+/* Where a world is saved to. */
 typedef struct ogive_writer {
   uint32_t struct_size;
   uint32_t reserved0;
-  void* user;
+  void* user;                  /* given to put */
   /* Takes one array of `count` elements; data lives during the call. Not OGIVE_OK: the save ends with that status. */
   ogive_status (*put)(void* user, const char* name, int32_t type, int64_t count, const void* data);
 } ogive_writer;
+/* Where a saved world is read from. */
 typedef struct ogive_reader {
   uint32_t struct_size;
   uint32_t reserved0;
-  void* user;
+  void* user;                  /* given to find and get */
   /* Type and element count of a named array; OGIVE_ERROR_FORMAT if there is none. */
   ogive_status (*find)(void* user, const char* name, int32_t* type, int64_t* count);
   /* Copies it; `count` is what find said. */
   ogive_status (*get)(void* user, const char* name, int64_t count, void* data);
 } ogive_reader;
+/* Puts every array in turn; after ogive_world_prepare. The world is not changed. */
 OGIVE_API ogive_status ogive_world_save(const ogive_world* world, const ogive_writer* writer);
 /* Into a world fresh from ogive_world_create. Afterwards it is prepared and continues to the same bits as the saved one.
  * On failure the world is as fresh as before. Every count is checked against the model before memory is taken. */

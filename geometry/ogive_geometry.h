@@ -39,6 +39,7 @@ OGIVE_API const char* ogive_mesh_message(const ogive_mesh* mesh);
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
 
+/* How a file is read. */
 typedef struct ogive_mesh_read_def {
   uint32_t struct_size;
   uint32_t reserved0;
@@ -88,14 +89,15 @@ OGIVE_API ogive_status ogive_mesh_report(const ogive_mesh* mesh, char* text, siz
 typedef struct ogive_mesh_info {
   uint32_t struct_size;
   int32_t checked;            /* 1: ogive_mesh_check accepted it, so it can be filled */
-  int64_t facets;
-  int64_t vertices;
+  int64_t facets;             /* triangles */
+  int64_t vertices;           /* different corners */
   double area;                /* [L2] */
-  double lower[3], upper[3];  /* [L] bounding box in mesh coordinates */
+  double lower[3];            /* [L] bounding box in mesh coordinates */
+  double upper[3];            /* [L] */
   /* Once checked; 0 otherwise. */
   double volume;              /* [L3] enclosed, cavities taken off */
   int32_t shells;             /* closed surfaces, cavities among them */
-  int32_t cavities;
+  int32_t cavities;           /* shells that face inwards */
   /* Findings. */
   int64_t dropped_degenerate; /* facets with a corner twice: dropped */
   int64_t dropped_duplicate;  /* facets given more than once: all but the first dropped */

@@ -27,7 +27,7 @@ class Header:
         self.text = text
         code = re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
         self.constants = [(name, int(value)) for name, value in
-                          re.findall(r"^#define (OGIVE_\w+) (-?\d+)$", code, flags=re.M)]
+                          re.findall(r"^#define (OGIVE_\w+) (-?\d+)[ \t]*$", code, flags=re.M)]
         code = re.sub(r"^#.*$", " ", code, flags=re.M)
         code = re.sub(r"\s+", " ", code)
         for body in re.findall(r"\benum \{(.*?)\}", code):
