@@ -4,12 +4,12 @@
 set -euo pipefail
 
 packages=(
-  g++ cmake ninja-build
+  g++ gfortran cmake ninja-build pkg-config
   libhdf5-dev                                                         # lib/io
   libcgal-dev                                                         # geometry
   libboost-program-options-dev libtomlplusplus-dev libmuparser-dev    # driver
   nlohmann-json3-dev                                                  # driver, tests
-  libgtest-dev                                                        # tests
+  libgtest-dev abigail-tools doxygen                                  # tests
   valgrind                                                            # tests: counts of instructions
   libbenchmark-dev                                                    # bench
   python3 python3-numpy python3-h5py python3-matplotlib               # tools/*.py

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# All tests from nothing: packages, release build, every CTest label, then the unit tests (engine, geometry, files, scenes)
-# under the address and undefined-behaviour sanitizers. Goes on after a failure where it can; the summary tells.
+# All tests from nothing: packages, release build, every CTest label, then the unit tests (engine, geometry, files, scenes) and
+# those of the C interface under the address and undefined-behaviour sanitizers, and several worlds on several threads under the
+# thread sanitizer. Goes on after a failure where it can; the summary tells.
 #
 #   tools/test.sh [--build-dir DIR] [--jobs N] [--no-sanitizers]
 #
-# DIR (default: $OGIVE_BUILD_DIR, else build) gets release/ and asan/. N (default: all processors) builds and tests at once.
+# DIR (default: $OGIVE_BUILD_DIR, else build) gets release/, asan/ and tsan/. N (default: all processors) builds and tests at once.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-usage() { sed -n '2,7s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '2,8s/^# \{0,1\}//p' "$0"; }
 build=${OGIVE_BUILD_DIR:-build}
 jobs=$(nproc)
 sanitizers=yes
@@ -46,14 +47,23 @@ asan() {
   phase "sanitizers: configure" cmake --preset asan -B "$build/asan" -DOGIVE_CPU_LEVELS=OFF \
     -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1 -DNDEBUG" || return 0
   phase "sanitizers: build" cmake --build "$build/asan" -j "$jobs" \
-    --target ogive_unit_tests geometry_tests io_tests ogive_scene_tests || return 0
-  phase "sanitizers: unit tests" ctest --test-dir "$build/asan" --output-on-failure --no-tests=error -L '^unit$' -j "$jobs" || true
+    --target ogive_unit_tests geometry_tests io_tests ogive_scene_tests ogive_capi_tests ogive_capi_good_test \
+             ogive_capi_bad_test ogive_old_client ogive_layout_c ogive_layout_fortran ogive_fortran_test || return 0
+  phase "sanitizers: unit and interface tests" ctest --test-dir "$build/asan" --output-on-failure --no-tests=error \
+    -L '^(unit|capi)$' -j "$jobs" || true
   phase "sanitizers: scene tests" "$build/asan/bin/ogive_scene_tests" --gtest_brief=1 || true
+}
+
+tsan() {
+  phase "thread sanitizer: configure" cmake --preset tsan -B "$build/tsan" -DOGIVE_CPU_LEVELS=OFF -DOGIVE_IO=OFF \
+    -DOGIVE_GEOMETRY=OFF -DOGIVE_DRIVER=OFF -DOGIVE_FORTRAN=OFF -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1 -DNDEBUG" || return 0
+  phase "thread sanitizer: build" cmake --build "$build/tsan" -j "$jobs" --target ogive_thread_tests || return 0
+  phase "thread sanitizer: worlds on threads" "$build/tsan/bin/ogive_thread_tests" --gtest_brief=1 || true
 }
 
 phase "packages" tools/install_packages.sh || exit 1
 release
-[ $sanitizers = no ] || asan
+[ $sanitizers = no ] || { asan; tsan; }
 
 printf '\n=== summary (%d jobs, %d s)\n' "$jobs" "$SECONDS"
 printf '%s\n' "${results[@]}"

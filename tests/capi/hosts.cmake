@@ -1,5 +1,5 @@
 # The example hosts: the same case from the program, C and Fortran to the last digit; the spring's conservation.
-if(TARGET example_spring_coupling)
+if(TARGET example_spring_coupling AND NOT OGIVE_SANITIZE)
   ogive_add_check(Hosts.ASpringConservesEnergyAndMomentumAcrossTheInterface example_spring_coupling)
 endif()
 if(TARGET example_thick_plate AND TARGET ogive_driver AND NOT OGIVE_SANITIZE)
