@@ -14,12 +14,9 @@ import subprocess
 import sys
 
 abidiff, root, record, library = sys.argv[1:]
-directory = os.path.dirname(library)
 suppressions = os.path.join(root, "tests/capi/abi/suppressions.txt")
-result = subprocess.run([abidiff, "--exported-interfaces-only", "--no-added-syms", "--no-show-locs", "--drop-private-types",
-                         "--suppressions", suppressions,
-                         "--headers-dir2", os.path.join(root, "capi"), "--headers-dir2", os.path.join(root, "geometry"),
-                         record, library], capture_output=True, text=True)
+result = subprocess.run([abidiff, "--exported-interfaces-only", "--no-added-syms", "--no-show-locs",
+                         "--suppressions", suppressions, record, library], capture_output=True, text=True)
 print(result.stdout, result.stderr)
 with open(record, encoding="utf-8") as stream:
     functions = len(re.findall("<elf-symbol ", stream.read()))
