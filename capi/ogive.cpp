@@ -511,7 +511,7 @@ bool view_field(const BodyState& body, const std::string& name, ogive_field_view
     view.component[0] = body.position.data() + 3;
   } else if (name == "affine_velocity") {
     view.stride = affine_size;
-    for (int c = 0; c < 9; ++c) view.component[c] = body.affine.data() + 4 * (c % 3) + c / 3;
+    for (int c = 0; c < 9; ++c) view.component[c] = body.affine.data() + 3 * (c % 3) + c / 3;
   } else {
     return false;
   }

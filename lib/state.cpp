@@ -58,6 +58,14 @@ void allocate_transfer(const Model& model, const Material& material, BodyState& 
     body.viscous_pressure.assign(n, 0.0);
 }
 
+// Version 1 kept a particle's affine velocity in three records of four doubles.
+static void exchange_old_affine(Archive& a, const std::string& name, AlignedVector<double>& affine, std::int64_t particles) {
+  AlignedVector<double> records;
+  a.sized(name, records, 12 * particles);
+  affine.resize(static_cast<std::size_t>(affine_size * particles));
+  for (std::size_t i = 0; i < affine.size(); ++i) affine[i] = records[i / 3 * 4 + i % 3];
+}
+
 // Pairs that have met: two whole numbers and eight others each.
 static void exchange_pairs(State& state, Archive& a) {
   std::vector<std::int32_t> bodies;
@@ -189,7 +197,11 @@ void State::exchange(const Model& model, Archive& a) {
     if (material.thermal()) a.sized(at + "temperature", body.temperature, n);
     if (material.hyperelastic())
       for (int c = 0; c < 9; ++c) a.sized(at + "deformation_" + std::to_string(c), body.deformation[c], n);
-    if (model.numerics.affine()) a.sized(at + "affine", body.affine, affine_size * n);
+    if (model.numerics.affine() && a.version() == 1) {
+      exchange_old_affine(a, at + "affine", body.affine, n);
+    } else if (model.numerics.affine()) {
+      a.sized(at + "affine", body.affine, affine_size * n);
+    }
     if (model.numerics.update_order == UpdateOrder::StressLast && material.viscous())
       a.sized(at + "viscous_pressure", body.viscous_pressure, n);
     a.sized(at + "number", body.number, n);
