@@ -1,6 +1,7 @@
 // The scene as TOML: the file with every --set merged into it, each value knowing where it was written.
 #include "document.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -104,6 +105,7 @@ Document Document::from_file(const std::filesystem::path& file, const std::vecto
   for (const std::string& setting : settings) {
     if (!setting.empty() && setting.front() == '@') {
       const std::string name = setting.substr(1);
+      document.merged_.push_back(name);
       merge(document.root_, parsed(text_of(name, "a file of settings (TOML) after \"--set @\""), name));
       continue;
     }
@@ -165,7 +167,9 @@ void Document::set(const std::string& path, const std::string& value_text, const
 
 std::string Document::place(const toml::source_region& region) const {
   if (!region.path) return "";
-  if (region.path->rfind("--set ", 0) == 0) return *region.path;
+  const bool of_a_file =
+      *region.path == name_ || std::find(merged_.begin(), merged_.end(), *region.path) != merged_.end();
+  if (!of_a_file) return *region.path;
   if (region.begin.line == 0) return "";
   return *region.path + ':' + std::to_string(region.begin.line) + ':' + std::to_string(region.begin.column);
 }

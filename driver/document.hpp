@@ -34,6 +34,7 @@ class Document {
   std::string place(const toml::source_region& region) const;
 
   std::string name_;  // of the file, as the user wrote it
+  std::vector<std::string> merged_;  // other files whose values were merged into it
   toml::table root_;
 };
 

@@ -29,8 +29,10 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_TRANSFER_FLIP = 0
   integer(c_int32_t), parameter :: OGIVE_TRANSFER_AFFINE_FLIP = 1
   integer(c_int32_t), parameter :: OGIVE_TRANSFER_APIC = 2
+  integer(c_int32_t), parameter :: OGIVE_TRANSFER_XPIC = 3
   integer(c_int32_t), parameter :: OGIVE_UPDATE_STRESS_FIRST = 0
   integer(c_int32_t), parameter :: OGIVE_UPDATE_STRESS_LAST = 1
+  integer(c_int32_t), parameter :: OGIVE_UPDATE_STRESS_LAST_AS_IS = 2
   integer(c_int32_t), parameter :: OGIVE_REGION_BOX = 0
   integer(c_int32_t), parameter :: OGIVE_REGION_OUTSIDE_CYLINDER = 1
   integer(c_int32_t), parameter :: OGIVE_REGION_EVERYWHERE = 2
@@ -45,6 +47,9 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_EOS_MIE_GRUNEISEN = 1
   integer(c_int32_t), parameter :: OGIVE_FAILURE_NONE = 0
   integer(c_int32_t), parameter :: OGIVE_FAILURE_PLASTIC_STRAIN = 1
+  integer(c_int32_t), parameter :: OGIVE_FORMULATION_DEFORMABLE = 0
+  integer(c_int32_t), parameter :: OGIVE_FORMULATION_RIGID_FREE = 1
+  integer(c_int32_t), parameter :: OGIVE_FORMULATION_RIGID_PRESCRIBED = 2
   integer(c_int32_t), parameter :: OGIVE_SOLID_BOX = 0
   integer(c_int32_t), parameter :: OGIVE_SOLID_CYLINDER = 1
   integer(c_int32_t), parameter :: OGIVE_SOLID_SPHERE = 2
@@ -54,8 +59,16 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_CONTACT_SINGLE_FIELD = 0
   integer(c_int32_t), parameter :: OGIVE_CONTACT_HUANG_FIRST = 1
   integer(c_int32_t), parameter :: OGIVE_CONTACT_HUANG_SECOND = 2
+  integer(c_int32_t), parameter :: OGIVE_CONTACT_YORK = 3
+  integer(c_int32_t), parameter :: OGIVE_CONTACT_HU_CHEN = 4
+  integer(c_int32_t), parameter :: OGIVE_CONTACT_BARDENHAGEN_2000 = 5
+  integer(c_int32_t), parameter :: OGIVE_CONTACT_BARDENHAGEN_2001 = 6
+  integer(c_int32_t), parameter :: OGIVE_CONTACT_PAN_2008 = 7
   integer(c_int32_t), parameter :: OGIVE_NORMAL_MASTER = 0
   integer(c_int32_t), parameter :: OGIVE_NORMAL_AVERAGE = 1
+  integer(c_int32_t), parameter :: OGIVE_NORMAL_VOLUME_GRADIENT = 2
+  integer(c_int32_t), parameter :: OGIVE_NORMAL_OCCUPIED_CELL = 3
+  integer(c_int32_t), parameter :: OGIVE_NORMAL_LOGISTIC_REGRESSION = 4
   integer(c_int32_t), parameter :: OGIVE_DETECTION_SHARED_NODE = 0
   integer(c_int32_t), parameter :: OGIVE_DETECTION_GAP = 1
   integer(c_int32_t), parameter :: OGIVE_STOP_NONE = 0
@@ -99,6 +112,8 @@ module ogive_c
     integer(c_int32_t) :: transfer
     integer(c_int32_t) :: update_order
     real(c_double) :: pic_fraction
+    integer(c_int32_t) :: xpic_order
+    integer(c_int32_t) :: reserved1
   end type ogive_numerics_def
 
   type, bind(C) :: ogive_clamp_def
@@ -159,6 +174,8 @@ module ogive_c
     real(c_double) :: velocity(3)
     real(c_double) :: angular_velocity(3)
     real(c_double) :: angular_centre(3)
+    integer(c_int32_t) :: formulation
+    integer(c_int32_t) :: reserved0
   end type ogive_body_def
 
   type, bind(C) :: ogive_solid_def
@@ -183,6 +200,17 @@ module ogive_c
     integer(c_int32_t) :: reserved0
     real(c_double) :: gap_offset
   end type ogive_contact_def
+
+  type, bind(C) :: ogive_wall_def
+    integer(c_int32_t) :: struct_size
+    integer(c_int32_t) :: method
+    real(c_double) :: point(3)
+    real(c_double) :: normal(3)
+    real(c_double) :: friction
+    integer(c_int32_t) :: detection
+    integer(c_int32_t) :: reserved0
+    real(c_double) :: gap_offset
+  end type ogive_wall_def
 
   type, bind(C) :: ogive_stop_def
     integer(c_int32_t) :: struct_size
@@ -231,6 +259,9 @@ module ogive_c
     real(c_double) :: residual_relative
     real(c_double) :: maximum_speed
     real(c_double) :: maximum_speed_ever
+    real(c_double) :: prescribed_work
+    real(c_double) :: angular_momentum(3)
+    real(c_double) :: contact_couple(3)
   end type ogive_ledger
 
   type, bind(C) :: ogive_body_result
@@ -256,6 +287,8 @@ module ogive_c
     real(c_double) :: upper(3)
     real(c_double) :: maximum_plastic_strain
     real(c_double) :: maximum_temperature
+    real(c_double) :: angular_momentum(3)
+    real(c_double) :: angular_velocity(3)
   end type ogive_body_result
 
   type, bind(C) :: ogive_load_result
@@ -451,6 +484,17 @@ module ogive_c
       type(ogive_body_id), intent(inout) :: id
       integer(c_int32_t) :: ogive_body_add_particles
     end function
+    function ogive_body_set_motion(world, body, count, time, velocity, angular_velocity) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: world
+      type(ogive_body_id), value :: body
+      integer(c_int32_t), value :: count
+      real(c_double), intent(in) :: time(*)
+      real(c_double), intent(in) :: velocity(*)
+      real(c_double), intent(in) :: angular_velocity(*)
+      integer(c_int32_t) :: ogive_body_set_motion
+    end function
     subroutine ogive_solid_def_init(def, size) bind(C)
       import
       implicit none
@@ -498,6 +542,41 @@ module ogive_c
       type(ogive_body_id), value :: b
       type(ogive_contact_def), intent(in) :: def
       integer(c_int32_t) :: ogive_contact_set_pair
+    end function
+    function ogive_contact_method_count() bind(C)
+      import
+      implicit none
+      integer(c_int32_t) :: ogive_contact_method_count
+    end function
+    function ogive_contact_method_name(method) bind(C)
+      import
+      implicit none
+      integer(c_int32_t), value :: method
+      type(c_ptr) :: ogive_contact_method_name
+    end function
+    function ogive_contact_normal_count() bind(C)
+      import
+      implicit none
+      integer(c_int32_t) :: ogive_contact_normal_count
+    end function
+    function ogive_contact_normal_name(normal) bind(C)
+      import
+      implicit none
+      integer(c_int32_t), value :: normal
+      type(c_ptr) :: ogive_contact_normal_name
+    end function
+    subroutine ogive_wall_def_init(def, size) bind(C)
+      import
+      implicit none
+      type(ogive_wall_def), intent(inout) :: def
+      integer(c_size_t), value :: size
+    end subroutine
+    function ogive_wall_add(world, def) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: world
+      type(ogive_wall_def), intent(in) :: def
+      integer(c_int32_t) :: ogive_wall_add
     end function
     subroutine ogive_stop_def_init(def, size) bind(C)
       import

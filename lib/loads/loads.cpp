@@ -64,7 +64,9 @@ int count_loads(const Model& model, int body) {
 
 }  // namespace
 
-bool particles_loaded(const BodyState& body) { return !body.loads.empty() || !body.force.empty(); }
+bool particles_loaded(const Model& model, const State& state, int body) {
+  return !model.bodies[body].rigid() && (!state.bodies[body].loads.empty() || !state.bodies[body].force.empty());
+}
 
 void select_loaded_particles(const Model& model, State& state) {
   for (LoadState& load : state.loads) load.mass = 0;
@@ -90,7 +92,7 @@ void select_loaded_particles(const Model& model, State& state) {
 void allocate_load_sums(const Model& model, const State& state, Workspace& workspace) {
   std::vector<std::int32_t> size(state.bodies.size(), 0);
   for (std::size_t b = 0; b < state.bodies.size(); ++b)
-    if (particles_loaded(state.bodies[b])) size[b] = count_loads(model, static_cast<int>(b)) + 1;
+    if (particles_loaded(model, state, static_cast<int>(b))) size[b] = count_loads(model, static_cast<int>(b)) + 1;
   std::int32_t next = 0;
   for (GroupLinks& link : workspace.links) {
     link.first_load_sum = next;
@@ -149,10 +151,8 @@ void measure_loads(const Model& model, const State& state, Workspace& workspace,
 }
 
 void book_loads(const Model& model, State& state, const Workspace& workspace, double dt) {
-  for (std::size_t i = 0; i < state.loads.size(); ++i)
-    if (model.loads[i].on_particles()) state.loads[i].force = {};
   for (const GroupLinks& link : workspace.links) {
-    if (!particles_loaded(state.bodies[link.body])) continue;
+    if (!particles_loaded(model, state, link.body)) continue;
     const BodyLoads loads = loads_of(model, state, link.body);
     for (int k = 0; k <= loads.count; ++k) {
       const LoadSums& sums = workspace.load_sums[static_cast<std::size_t>(link.first_load_sum + k)];
@@ -160,18 +160,47 @@ void book_loads(const Model& model, State& state, const Workspace& workspace, do
       state.ledger.external_work += sums.work;
       if (k == loads.count) continue;
       LoadState& load = state.loads[loads.load[k]];
-      for (int c = 0; c < 3; ++c) load.force[c] += sums.force[c];
+      add(load.force, sums.force);
+      add(load.impulse, times(dt, sums.force));
       load.work += sums.work;
     }
   }
-  for (std::size_t i = 0; i < state.loads.size(); ++i)
-    if (model.loads[i].on_particles())
-      for (int c = 0; c < 3; ++c) state.loads[i].impulse[c] += state.loads[i].force[c] * dt;
+}
+
+void load_rigid(const Model& model, State& state, RigidMotion& motion, double dt) {
+  const BodyState& body = state.bodies[motion.body];
+  if (body.loads.empty() && body.force.empty()) return;
+  const BodyLoads loads = loads_of(model, state, motion.body);
+  std::array<Vector3, most_particle_loads + 1> force{}, moment{};
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+      const double* x = &body.position[4 * p];
+      const Vector3 arm = minus({x[0], x[1], x[2]}, motion.centre);
+      const auto take = [&](int k, const Vector3& f) {
+        add(force[k], f);
+        add(moment[k], cross(arm, f));
+      };
+      if (!body.loads.empty())
+        for (int k = 0; k < loads.count; ++k)
+          if (body.loads[p] >> k & 1) take(k, times(x[3], loads.per_mass[k]));
+      if (!body.force.empty()) take(loads.count, {body.force[4 * p], body.force[4 * p + 1], body.force[4 * p + 2]});
+    }
+  for (int k = 0; k <= loads.count; ++k) {
+    Vector3 impulse = times(dt, force[k]), turn = times(dt, moment[k]);
+    const Vector3 velocity = motion.velocity, spin = motion.spin;
+    push(motion, impulse, turn);
+    const double work = 0.5 * (dot(impulse, plus(velocity, motion.velocity)) + dot(turn, plus(spin, motion.spin)));
+    add(state.ledger.external_impulse, impulse);
+    state.ledger.external_work += work;
+    if (k == loads.count) continue;
+    LoadState& load = state.loads[loads.load[k]];
+    add(load.force, times(1 / dt, impulse));
+    add(load.impulse, impulse);
+    load.work += work;
+  }
 }
 
 void apply_driven_velocities(const Model& model, State& state, Workspace& workspace, double dt) {
-  for (std::size_t i = 0; i < state.loads.size(); ++i)
-    if (!model.loads[i].on_particles()) state.loads[i].force = {};
   for (const DrivenNode& driven : workspace.driven) {
     NodeRecord& node = workspace.nodes[driven.node];
     if (!(node.v[3] > 0)) continue;

@@ -11,6 +11,7 @@
 
 #include "grid.hpp"
 #include "model.hpp"
+#include "rigid/rigid_motion.hpp"
 #include "state.hpp"
 
 namespace ogive {
@@ -24,6 +25,10 @@ void allocate_load_sums(const Model& model, const State& state, Workspace& works
 // Adds f_I to the forces of the nodes of a group. Runs beside others that touch no common node.
 void map_loads(const Model& model, const State& state, Workspace& workspace, std::int32_t link);
 
+// The same for a rigid body that is free: the loads' sum and their moment about the centre push it as a whole, with the
+// work of the mean of its motion before and after. A body of prescribed motion does not feel them, and nothing is booked.
+void load_rigid(const Model& model, State& state, RigidMotion& motion, double dt);
+
 // Holds driven nodes. Node records hold {velocity at the beginning, mass | velocity at the end}.
 void apply_driven_velocities(const Model& model, State& state, Workspace& workspace, double dt);
 
@@ -33,7 +38,7 @@ void measure_loads(const Model& model, const State& state, Workspace& workspace,
 // Books what measure_loads found.
 void book_loads(const Model& model, State& state, const Workspace& workspace, double dt);
 
-// True if some load or force acts on particles of the body.
-bool particles_loaded(const BodyState& body);
+// True if some load or force acts on particles of the body by way of the grid.
+bool particles_loaded(const Model& model, const State& state, int body);
 
 }  // namespace ogive

@@ -7,6 +7,7 @@
 
 #include "small_world.h"
 
+static const double motion_time[1] = {0};
 static const ogive_body_id stale = {7}, none = {-1}, below = {-5};
 
 static void null_worlds(void) {
@@ -35,6 +36,10 @@ static void null_worlds(void) {
   CHECK(ogive_solid_particles(NULL, NULL, &count, NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_set_contact(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_contact_set_pair(NULL, none, none, NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_wall_add(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_body_set_motion(NULL, none, 1, &number, NULL, NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_contact_method_name(-1) == NULL && ogive_contact_method_name(ogive_contact_method_count()) == NULL);
+  CHECK(ogive_contact_normal_name(-1) == NULL && ogive_contact_normal_name(ogive_contact_normal_count()) == NULL);
   CHECK(ogive_world_set_stop(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_prepare(NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_plan(NULL, NULL, 0, &needed) == OGIVE_ERROR_ARGUMENT);
@@ -220,6 +225,18 @@ static void definitions(void) {
   WITH(contact, master, below, ogive_world_set_contact(world, &contact), "master");
   CHECK_REFUSED(world, ogive_contact_set_pair(world, (ogive_body_id){0}, stale, &contact), "body");
   CHECK_REFUSED(world, ogive_contact_set_pair(world, (ogive_body_id){0}, (ogive_body_id){0}, &contact), "two bodies");
+
+  ogive_wall_def wall;
+  ogive_wall_def_init(&wall, sizeof wall);
+  CHECK_REFUSED(world, ogive_wall_add(world, NULL), "def");
+  BAD_SIZES(wall, ogive_wall_add(world, &wall));
+  WITH(wall, method, -1, ogive_wall_add(world, &wall), "method");
+  WITH(wall, normal[2], 0, ogive_wall_add(world, &wall), "normal");
+  WITH(wall, point[0], NAN, ogive_wall_add(world, &wall), "point");
+  WITH(wall, friction, -1, ogive_wall_add(world, &wall), "friction");
+  WITH(wall, detection, 2, ogive_wall_add(world, &wall), "detection");
+  CHECK_REFUSED(world, ogive_body_set_motion(world, stale, 1, motion_time, NULL, NULL), "body");
+  CHECK_REFUSED(world, ogive_body_set_motion(world, (ogive_body_id){0}, 1, motion_time, NULL, NULL), "PRESCRIBED");
 
   ogive_stop_def_init(&stop, sizeof stop);
   CHECK_REFUSED(world, ogive_world_set_stop(world, NULL), "def");
