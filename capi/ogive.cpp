@@ -1411,8 +1411,8 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
   return guarded(world, [&] {
     require_prepared(world, "ogive_field_set");
     const Field& field = field_named(world, id, name, true);
-    if (world->model.bodies[id.index].rigid())
-      refuse("field \"" + std::string(name) + "\": cannot be set, the body is rigid");
+    if (world->model.bodies[id.index].rigid() && std::strcmp(name, "force") != 0)
+      refuse("field \"" + std::string(name) + "\": cannot be set, the body is rigid; only \"force\" can");
     if (!field.settable) refuse("field \"" + std::string(name) + "\": cannot be set");
     BodyState& body = const_cast<BodyState&>(body_of(world, id));
     check_count(body, field, count);

@@ -410,8 +410,11 @@ OGIVE_API ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id 
 /* The methods and rules for normals that this library has, by their values from 0; names as in scenes ("huang_second"), which
  * live for ever, NULL out of range. */
 OGIVE_API int32_t ogive_contact_method_count(void);
+/* Name of a contact method. */
 OGIVE_API const char* ogive_contact_method_name(int32_t method);
+/* How many rules for normals there are. */
 OGIVE_API int32_t ogive_contact_normal_count(void);
+/* Name of a rule for normals. */
 OGIVE_API const char* ogive_contact_normal_name(int32_t normal);
 
 /* A rigid wall at rest: the half space beyond the plane. Bodies in front of it and rigid ones that are free meet it by
@@ -427,6 +430,7 @@ typedef struct ogive_wall_def {
   double gap_offset;  /* [-] cells, -2..2. Default 0.3 */
 } ogive_wall_def;
 OGIVE_API void ogive_wall_def_init(ogive_wall_def* def, size_t size);
+/* Adds a wall; before ogive_world_prepare. */
 OGIVE_API ogive_status ogive_wall_add(ogive_world* world, const ogive_wall_def* def);
 
 /* ------------------------------------------------------------------------------------------------------ stop conditions */

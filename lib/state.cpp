@@ -134,13 +134,13 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/ledger/contact_work", ledger.contact_work);
   a.value("state/ledger/boundary_work", ledger.boundary_work);
   a.value("state/ledger/external_work", ledger.external_work);
-  a.value("state/ledger/prescribed_work", ledger.prescribed_work);
   a.value("state/ledger/boundary_impulse", ledger.boundary_impulse);
   a.value("state/ledger/external_impulse", ledger.external_impulse);
-  a.value("state/ledger/contact_couple", ledger.contact_couple);
   a.value("state/ledger/initial_total", ledger.initial_total);
 
   if (a.version() >= 2) {
+    a.value("state/ledger/prescribed_work", ledger.prescribed_work);
+    a.value("state/ledger/contact_couple", ledger.contact_couple);
     if (a.loading()) loads.assign(model.loads.size(), LoadState{});
     for (std::size_t i = 0; i < loads.size(); ++i) {
       const std::string at = "state/loads/" + std::to_string(i) + "/";

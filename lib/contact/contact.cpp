@@ -512,9 +512,8 @@ void book_contact_forces(const Model& model, State& state, const Workspace& work
       add(state.bodies[workspace.slots[s].field].totals.contact_force, workspace.slot_contact_force[s]);
 }
 
-// The pairs of bodies, node by node.
-void book_pairs(State& state, const Workspace& workspace, double dt) {
-  for (PairTotals& pair : state.pairs) pair.force = {};
+// What passed between the pairs of bodies in a phase, node by node: as the forces on bodies and the ledger's energies.
+void book_pairs(State& state, const Workspace& workspace, double dt, bool at_end) {
   for (std::size_t i = 0; i < workspace.mixed.size(); ++i) {
     const BlockContacts& contacts = workspace.block_contacts[i];
     for (const ContactNode& node : contacts.nodes)
@@ -523,8 +522,9 @@ void book_pairs(State& state, const Workspace& workspace, double dt) {
         if (at_node.constraint.hold == Hold::Nothing) continue;
         const std::int32_t a = contacts.fields[node.first_field + at_node.a].body;
         const std::int32_t b = contacts.fields[node.first_field + at_node.b].body;
-        const Vector3 impulse = impulse_on_a(at_node);
+        Vector3 impulse = impulse_on_a(at_node);
         if (b < 0 || impulse == Vector3{}) continue;  // a wall, or nothing passed
+        if (!at_end && !at_node.method->start_reaches_particles) impulse = {};
         auto pair = std::lower_bound(state.pairs.begin(), state.pairs.end(), std::pair(a, b),
                                      [](const PairTotals& left, const std::pair<std::int32_t, std::int32_t>& right) {
                                        return std::pair(left.a, left.b) < right;
@@ -535,11 +535,11 @@ void book_pairs(State& state, const Workspace& workspace, double dt) {
           pair->b = b;
         }
         add(pair->force, times(1 / dt, impulse));
+        add(pair->impulse, impulse);
         pair->friction_dissipation += at_node.friction_dissipation;
         pair->contact_work += at_node.contact_work;
       }
   }
-  for (PairTotals& pair : state.pairs) add(pair.impulse, times(dt, pair.force));
 }
 
 void book_energies(State& state, const Workspace& workspace) {
@@ -618,6 +618,8 @@ void solve_node(BlockContacts& contacts, ContactNode& node, const std::vector<Ri
 }
 
 void start_contact(State& state, Workspace& workspace, double dt, StartUse use) {
+  if (use != StartUse::Strain)
+    for (PairTotals& pair : state.pairs) pair.force = {};
   if (!workspace.contact_needs.start) return;
   // The strain of a later mapping must not move the rigid bodies.
   std::vector<RigidMotion> copy;
@@ -666,6 +668,7 @@ void start_contact(State& state, Workspace& workspace, double dt, StartUse use) 
         add(body.kept_moment, plus(cross(minus(node.place, body.centre), field.kept), field.kept_couple));
       }
   book_impulses(state, workspace, dt);
+  book_pairs(state, workspace, dt, false);
   book_energies(state, workspace);
 }
 
@@ -695,7 +698,7 @@ void end_contact(const Model& model, State& state, Workspace& workspace, double 
   });
   book_impulses(state, workspace, dt);
   book_contact_forces(model, state, workspace);
-  book_pairs(state, workspace, dt);
+  book_pairs(state, workspace, dt, true);
   book_energies(state, workspace);
   if (workspace.contact_needs.memory) {
     state.contact_memory.clear();

@@ -240,7 +240,7 @@ TEST(WantOfMemory, EveryFailingAllocationBecomesAStatusAndTheCallCanBeMadeAgain)
   }
   std::printf("  %ld failures injected; %ld calls succeeded when made again, %ld broke off within a step\n", injected, retried,
               broken);
-  EXPECT_GT(injected, 400);
+  EXPECT_GT(injected, 300);  // 375: where the contact arrays keep their memory from step to step there is less to refuse
   EXPECT_GT(retried, 300);
   for (const char* suffix : {"", ".particles", ".broken"}) std::remove((checkpoint + suffix).c_str());
 }

@@ -370,6 +370,7 @@ static void rigid_bodies_move_as_the_host_says(void) {
   ogive_solid_def box = small_box(-1.5);
   ogive_body_def body;
   ogive_wall_def wall;
+  ogive_numerics_def numerics;
   const double still[1] = {0}, rest[3] = {0, 0, 0}, away[3] = {-20, 0, 0};
   double forces[3 * 64], mass = 0, x_before = 0, x_after = 0;
   ogive_body_result before = {.struct_size = sizeof before}, after = {.struct_size = sizeof after};
@@ -381,6 +382,9 @@ static void rigid_bodies_move_as_the_host_says(void) {
   CHECK(ogive_world_create(&small.world) == OGIVE_OK);
   ogive_world* const world = small.world;
   CHECK_OK(world, ogive_world_set_grid(world, &grid));
+  ogive_numerics_def_init(&numerics, sizeof numerics);
+  numerics.maximum_time_step = 1e-4; /* no wave limits it */
+  CHECK_OK(world, ogive_world_set_numerics(world, &numerics));
   CHECK_OK(world, ogive_material_add(world, "copper", &copper, &small.copper));
   ogive_body_def_init(&body, sizeof body);
   body.material = small.copper;
