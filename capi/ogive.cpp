@@ -19,6 +19,8 @@
 
 #include "archive.hpp"
 #include "audit.hpp"
+#include "contact/method.hpp"
+#include "contact/normal.hpp"
 #include "error.hpp"
 #include "grid.hpp"
 #include "model.hpp"
@@ -187,6 +189,37 @@ std::string place_text(const double* x) {
   return buffer;
 }
 
+// What a rigid body is given besides its particles.
+void make_rigid(const Grid& grid, const ogive_body_def& def, const double* volume, const std::vector<std::int64_t>& kept,
+                const std::string& prefix, Body& rules, BodyState& body) {
+  double mass = 0;
+  Vector3 first{};
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const double* x = &body.position[4 * i];
+    const double side = std::cbrt(volume[kept[i]]);
+    mass += x[3];
+    rules.own_inertia += x[3] * side * side / 6;
+    for (int c = 0; c < 3; ++c) first[c] += x[3] * x[c];
+  }
+  rules.own_inertia /= mass;
+  rules.reference = vector_of(def.angular_centre);
+  const Vector3 v = vector_of(def.velocity), w = vector_of(def.angular_velocity);
+  body.rigid.centre = times(1 / mass, first);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!rules.cut[axis]) continue;
+    const double x = body.rigid.centre[axis];
+    body.rigid.centre[axis] =
+        x - grid.domain_min[axis] < grid.domain_max[axis] - x ? grid.domain_min[axis] : grid.domain_max[axis];
+  }
+  body.rigid.spin = w;
+  body.rigid.velocity = plus(v, cross(w, minus(body.rigid.centre, rules.reference)));
+  for (int axis = 0; axis < 3; ++axis)
+    if (rules.cut[axis] && (body.rigid.velocity[axis] != 0 || w[(axis + 1) % 3] != 0 || w[(axis + 2) % 3] != 0))
+      refuse(prefix + "velocity and angular_velocity: must fit the " + "xyz"[axis] +
+             " symmetry face that cuts the rigid body (no velocity across it, rotation about its normal alone)");
+  if (rules.prescribed()) rules.motion = {{0, v, w}};
+}
+
 ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_body_def* def, std::int64_t count,
                             const double* xyz, const double* volume) {
   require_stage(world, Stage::Building, "ogive_body_add");
@@ -201,6 +234,8 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   for (int c = 0; c < 3; ++c)
     if (!std::isfinite(full.velocity[c]) || !std::isfinite(full.angular_velocity[c]) || !std::isfinite(full.angular_centre[c]))
       refuse(prefix + "velocity, angular_velocity and angular_centre must be finite");
+  if (full.formulation < 0 || full.formulation > 2)
+    refuse(prefix + "formulation: must be 0..2, got " + std::to_string(full.formulation));
   if (world->model.bodies.size() >= 60000) refuse(prefix + "at most 60000 bodies");
   if (count < 1) refuse(prefix + "must have at least one particle, got " + std::to_string(count));
   if (count >= (std::int64_t{1} << 31) - 64) refuse(prefix + "must have fewer than 2^31 particles");
@@ -209,6 +244,10 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
 
   const Grid& grid = world->model.grid;
   const Material& material = world->model.materials[full.material.index];
+  Body rules;
+  rules.name = body_name;
+  rules.material = full.material.index;
+  rules.formulation = static_cast<Formulation>(full.formulation);
   std::vector<std::int64_t> kept;
   std::vector<double> share;
   kept.reserve(static_cast<std::size_t>(count));
@@ -227,6 +266,8 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
           // Cut at the mirror; a particle whose centre lies on it keeps the half that is inside.
           if (std::abs(inside) <= 1e-9 * grid.cell_size) part *= 0.5;
           else if (inside < 0) part = 0;
+          // A rigid body that touches its image is one with it.
+          if (rules.rigid() && inside <= 0.5 * std::cbrt(volume[p]) * (1 + 1e-6)) rules.cut[axis] = 1;
         } else if (inside < 0) {
           refuse(prefix + "must lie inside the domain; particle " + std::to_string(p) + " at " + place_text(x) +
                  " is outside the " + "xyz"[axis] + (side == 0 ? " min" : " max") + " face");
@@ -242,7 +283,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
 
   BodyState body;
   body.particles = static_cast<std::int64_t>(kept.size());
-  allocate_particles(material, body.particles, body);
+  allocate_particles(material, rules.rigid(), body.particles, body);
   Vector3 momentum{};
   double mass_sum = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -264,9 +305,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   for (int c = 0; c < 3; ++c) body.totals.initial_velocity[c] = momentum[c] / mass_sum;
   body.initial_spin = vector_of(full.angular_velocity);
 
-  Body rules;
-  rules.name = body_name;
-  rules.material = full.material.index;
+  if (rules.rigid()) make_rigid(grid, full, volume, kept, prefix, rules, body);
   // Both or neither, should memory fail.
   world->model.bodies.reserve(world->model.bodies.size() + 1);
   world->state.bodies.reserve(world->state.bodies.size() + 1);
@@ -308,8 +347,13 @@ void refuse_overlap(const Model& model, const State& state) {
       }
     bounds.push_back(box);
   }
-  for (int a = 0; a < static_cast<int>(bounds.size()); ++a)
-    for (int b = a + 1; b < static_cast<int>(bounds.size()); ++b) {
+  // In the order of their lower ends along x, so that the work follows the bodies that are near each other.
+  std::vector<int> order(bounds.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return bounds[a].lower[0] < bounds[b].lower[0]; });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t k = i + 1; k < order.size() && bounds[order[k]].lower[0] <= bounds[order[i]].upper[0] + 2 * h; ++k) {
+      const int a = std::min(order[i], order[k]), b = std::max(order[i], order[k]);
       Vector3 lower, upper;
       bool apart = false;
       for (int c = 0; c < 3; ++c) {
@@ -384,6 +428,8 @@ const Field all_fields[] = {
 bool has_field(const Model& model, int body, const Field& field) {
   const Material& material = model.material_of(body);
   const std::string name(field.name);
+  if (model.bodies[body].rigid())
+    return name == "position" || name == "velocity" || name == "mass" || name == "volume" || name == "number";
   if (name == "plastic_strain") return material.plastic();
   if (name == "temperature") return material.thermal();
   if (name == "failed") return material.failure != Failure::None;
@@ -600,6 +646,7 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
   defaults.transfer = static_cast<std::int32_t>(numerics.transfer);
   defaults.update_order = static_cast<std::int32_t>(numerics.update_order);
   defaults.pic_fraction = numerics.pic_fraction;
+  defaults.xpic_order = numerics.xpic_order;
   initialise(def, size, defaults);
 }
 
@@ -615,6 +662,7 @@ ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_d
     trial.numerics.transfer = static_cast<Transfer>(full.transfer);
     trial.numerics.update_order = static_cast<UpdateOrder>(full.update_order);
     trial.numerics.pic_fraction = full.pic_fraction;
+    trial.numerics.xpic_order = full.xpic_order;
     trial.validate_numerics();
     set_threads(world, full.threads);
     world->model.numerics = trial.numerics;
@@ -750,7 +798,7 @@ ogive_status ogive_solid_particles(ogive_world* world, const ogive_solid_def* so
 void ogive_contact_def_init(ogive_contact_def* def, size_t size) {
   const ContactRule rule;
   ogive_contact_def defaults{};
-  defaults.method = static_cast<std::int32_t>(Model().contact_method);
+  defaults.method = static_cast<std::int32_t>(rule.method);
   defaults.normal = static_cast<std::int32_t>(rule.normal);
   defaults.master.index = -1;
   defaults.detection = static_cast<std::int32_t>(rule.detection);
@@ -760,6 +808,7 @@ void ogive_contact_def_init(ogive_contact_def* def, size_t size) {
 
 static ContactRule rule_from(const ogive_world* world, const ogive_contact_def& full) {
   ContactRule rule;
+  rule.method = static_cast<ContactMethod>(full.method);
   rule.normal = static_cast<NormalRule>(full.normal);
   require_body_or_none(world, full.master, "master");
   rule.master = full.master.index;
@@ -774,10 +823,7 @@ ogive_status ogive_world_set_contact(ogive_world* world, const ogive_contact_def
   return guarded(world, [&] {
     require_stage(world, Stage::Building, "ogive_world_set_contact");
     const ogive_contact_def full = complete(def, "def", ogive_contact_def_init);
-    if (full.method < 0 || full.method > 2) refuse("contact method: must be 0..2, got " + std::to_string(full.method));
-    const ContactRule rule = rule_from(world, full);
-    world->model.contact_method = static_cast<ContactMethod>(full.method);
-    world->model.contact = rule;
+    world->model.contact = rule_from(world, full);
   });
 }
 
@@ -791,11 +837,77 @@ ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id a, ogive_b
     pair.a = a.index;
     pair.b = b.index;
     pair.rule = rule_from(world, complete(def, "def", ogive_contact_def_init));
-    auto& pairs = world->model.pairs;
-    std::erase_if(pairs, [&](const PairRule& old) {
-      return (old.a == pair.a && old.b == pair.b) || (old.a == pair.b && old.b == pair.a);
-    });
-    pairs.push_back(pair);
+    world->model.set_pair(pair);
+  });
+}
+
+int32_t ogive_contact_method_count(void) { return contact_method_count(); }
+
+const char* ogive_contact_method_name(int32_t method) {
+  if (method < 0 || method >= contact_method_count()) return nullptr;
+  return contact_method(static_cast<ContactMethod>(method)).name;
+}
+
+int32_t ogive_contact_normal_count(void) { return normal_rule_count(); }
+
+const char* ogive_contact_normal_name(int32_t normal) {
+  if (normal < 0 || normal >= normal_rule_count()) return nullptr;
+  return normal_rule(static_cast<NormalRule>(normal)).name;
+}
+
+void ogive_wall_def_init(ogive_wall_def* def, size_t size) {
+  const ContactRule rule;
+  ogive_wall_def defaults{};
+  defaults.method = static_cast<std::int32_t>(rule.method);
+  defaults.normal[2] = 1;
+  defaults.detection = static_cast<std::int32_t>(rule.detection);
+  defaults.gap_offset = rule.gap_offset;
+  initialise(def, size, defaults);
+}
+
+ogive_status ogive_wall_add(ogive_world* world, const ogive_wall_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_wall_add");
+    const ogive_wall_def full = complete(def, "def", ogive_wall_def_init);
+    Wall wall;
+    wall.point = vector_of(full.point);
+    wall.normal = vector_of(full.normal);
+    for (const double c : wall.normal)
+      if (!std::isfinite(c)) refuse("wall normal: must be finite, got " + std::to_string(c));
+    if (!make_unit(wall.normal)) refuse("wall normal: must be a direction that is not zero");
+    wall.rule.method = static_cast<ContactMethod>(full.method);
+    wall.rule.friction = full.friction;
+    wall.rule.detection = static_cast<Detection>(full.detection);
+    wall.rule.gap_offset = full.gap_offset;
+    world->model.validate_wall(wall);
+    world->model.walls.push_back(wall);
+  });
+}
+
+ogive_status ogive_body_set_motion(ogive_world* world, ogive_body_id body, int32_t count, const double* time,
+                                   const double* velocity, const double* angular_velocity) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_body_set_motion");
+    body_of(world, body);
+    Body& rules = world->model.bodies[body.index];
+    const std::string prefix = "body \"" + rules.name + "\": ";
+    if (!rules.prescribed()) refuse(prefix + "motion: needs the formulation OGIVE_FORMULATION_RIGID_PRESCRIBED");
+    if (count < 1 || count > 1000000) refuse(prefix + "motion count: must be 1..1000000, got " + std::to_string(count));
+    require_pointer(time, "time");
+    std::vector<MotionKnot> motion(static_cast<std::size_t>(count));
+    for (std::int32_t i = 0; i < count; ++i) {
+      motion[i].time = time[i];
+      for (int c = 0; c < 3; ++c) {
+        motion[i].velocity[c] = velocity ? velocity[3 * i + c] : 0;
+        motion[i].angular_velocity[c] = angular_velocity ? angular_velocity[3 * i + c] : 0;
+      }
+    }
+    try {
+      world->model.validate_motion(motion);
+    } catch (const Error& error) {
+      throw Error(error.kind(), prefix + error.what());
+    }
+    rules.motion.swap(motion);
   });
 }
 
@@ -829,7 +941,7 @@ ogive_status ogive_world_prepare(ogive_world* world) {
   return guarded(world, [&] {
     require_stage(world, Stage::Building, "ogive_world_prepare");
     if (!world->has_grid) throw Error(ErrorKind::State, "ogive_world_prepare: the grid must be set (ogive_world_set_grid)");
-    world->model.validate_all();
+    world->model.complete();
     refuse_overlap(world->model, world->state);
     prepare_state(world->model, world->state, world->workspace);
     world->state.ledger.initial_total = total_energy(world->model, world->state);
@@ -928,6 +1040,7 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
       full.viscous_dissipation += totals.viscous_dissipation;
       for (int c = 0; c < 3; ++c) {
         full.momentum[c] += audit.momentum[c];
+        full.angular_momentum[c] += audit.angular_momentum[c];
         full.left_domain_momentum[c] += totals.left_momentum[c];
       }
       full.maximum_speed = std::max(full.maximum_speed, totals.maximum_speed);
@@ -936,15 +1049,17 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     for (int c = 0; c < 3; ++c) {
       full.boundary_impulse[c] = state.ledger.boundary_impulse[c];
       full.external_impulse[c] = state.ledger.external_impulse[c];
+      full.contact_couple[c] = state.ledger.contact_couple[c];
     }
     full.friction_dissipation = state.ledger.friction_dissipation;
     full.transfer_dissipation = state.ledger.transfer_dissipation;
     full.contact_work = state.ledger.contact_work;
     full.boundary_work = state.ledger.boundary_work;
     full.external_work = state.ledger.external_work;
+    full.prescribed_work = state.ledger.prescribed_work;
     full.initial_total = state.ledger.initial_total;
     full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation +
-                 full.transfer_dissipation - full.external_work;
+                 full.transfer_dissipation - full.external_work - full.prescribed_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
     deliver(full, ledger, "ledger");
@@ -1000,6 +1115,11 @@ ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id id, o
       full.lower[c] = audit.lower[c];
       full.upper[c] = audit.upper[c];
     }
+    const Vector3 about_centre = minus(audit.angular_momentum, cross(vector_of(full.centre), audit.momentum));
+    for (int c = 0; c < 3; ++c) {
+      full.angular_momentum[c] = about_centre[c];
+      full.angular_velocity[c] = body.rigid.spin[c];
+    }
     full.speed = std::sqrt(full.speed);
     full.initial_speed = std::sqrt(full.initial_speed);
     full.maximum_plastic_strain = audit.maximum_plastic_strain;
@@ -1043,6 +1163,8 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
   return guarded(world, [&] {
     require_prepared(world, "ogive_field_set");
     const Field& field = field_named(world, id, name);
+    if (world->model.bodies[id.index].rigid())
+      refuse("field \"" + std::string(name) + "\": cannot be set, the body is rigid");
     if (!field.settable) refuse("field \"" + std::string(name) + "\": cannot be set");
     BodyState& body = const_cast<BodyState&>(body_of(world, id));
     check_count(body, field, count);

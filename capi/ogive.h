@@ -8,7 +8,9 @@
  *   ogive_world_set_contact     contact method for all pairs of bodies         (optional)
  *   ogive_material_add          materials
  *   ogive_body_add_*            bodies, each of one material
- *   ogive_contact_set_pair      friction and normal of one pair                (optional)
+ *   ogive_body_set_motion       motion of a rigid body as a table in time      (optional)
+ *   ogive_contact_set_pair      another contact rule for one pair              (optional)
+ *   ogive_wall_add              rigid walls                                    (optional)
  *   ogive_world_prepare         checks the whole model once and freezes it
  *   ogive_world_step / ogive_world_advance
  *
@@ -112,13 +114,17 @@ enum {
   OGIVE_TRANSFER_AFFINE_FLIP = 1, /* the same, and each particle gives the grid the velocity field around it, v + C (x - x_p),
                                      with C from the grid's last velocity (Jiang et al. 2015): without the noise of FLIP
                                      below the grid's resolution, at the price of some energy (transfer_dissipation) */
-  OGIVE_TRANSFER_APIC = 2         /* particles take the grid's velocity itself and C (Jiang et al. 2015) */
+  OGIVE_TRANSFER_APIC = 2,        /* particles take the grid's velocity itself and C (Jiang et al. 2015) */
+  OGIVE_TRANSFER_XPIC = 3         /* XPIC(k) (Hammerquist, Nairn 2017): as FLIP, without the part of a particle's velocity
+                                     that the grid cannot see, filtered k-fold; k - 1 more passes a step */
 };
 /* When stress is updated. */
 enum {
   OGIVE_UPDATE_STRESS_FIRST = 0, /* USF, the papers' order: at the beginning of the step */
-  OGIVE_UPDATE_STRESS_LAST = 1   /* MUSL: at the end, from the new velocities mapped once more; a third dearer. With
+  OGIVE_UPDATE_STRESS_LAST = 1,  /* MUSL: at the end, from the new velocities mapped once more; a third dearer. With
                                     trilinear functions it prevents pressures that grow in particles lying at nodes */
+  OGIVE_UPDATE_STRESS_LAST_AS_IS = 2 /* USL (Sulsky, Chen, Schreyer 1994): at the end, from the nodal velocities as they are;
+                                    unstable at nodes with next to no mass, kept to show it */
 };
 
 typedef struct ogive_numerics_def {
@@ -133,7 +139,9 @@ typedef struct ogive_numerics_def {
   int32_t transfer;         /* OGIVE_TRANSFER_*. Default affine FLIP */
   int32_t update_order;     /* OGIVE_UPDATE_*. Default stress first */
   double pic_fraction;      /* [-] 0..1: part of the grid's own velocity in a particle's new one, each step. Default 0; APIC
-                               has 1 whatever stands here */
+                               has 1 whatever stands here, XPIC none */
+  int32_t xpic_order;       /* k of XPIC(k), 1..20; 1 is PIC. Default 2 */
+  int32_t reserved1;
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
 OGIVE_API ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_def* def);
@@ -218,12 +226,23 @@ OGIVE_API ogive_status ogive_material_add(ogive_world* world, const char* name, 
 
 /* ------------------------------------------------------------------------------------------------------------ bodies */
 
+enum {
+  OGIVE_FORMULATION_DEFORMABLE = 0,
+  /* A rigid body has no strain, stress or failure and meets others by contact alone (domain faces and clamps do not hold
+   * it; use walls). A symmetry face that cuts or touches it makes it one with its mirror images. */
+  OGIVE_FORMULATION_RIGID_FREE = 1,      /* six degrees of freedom; mass, centre and inertia from its particles */
+  OGIVE_FORMULATION_RIGID_PRESCRIBED = 2 /* infinite mass in contact; moves with velocity, and turns with angular_velocity
+                                            about the point that is at angular_centre at time 0 and moves with velocity;
+                                            or as ogive_body_set_motion says */
+};
 typedef struct ogive_body_def {
   uint32_t struct_size;
   ogive_material_id material; /* no default */
   double velocity[3];         /* [L/T] initial velocity of every particle. Default 0 */
   double angular_velocity[3]; /* [1/T] initial rotation about angular_centre, added to velocity. Default 0 */
   double angular_centre[3];   /* [L]. Default 0 */
+  int32_t formulation;        /* OGIVE_FORMULATION_*. Default deformable */
+  int32_t reserved0;
 } ogive_body_def;
 OGIVE_API void ogive_body_def_init(ogive_body_def* def, size_t size);
 
@@ -232,6 +251,12 @@ OGIVE_API void ogive_body_def_init(ogive_body_def* def, size_t size);
 OGIVE_API ogive_status ogive_body_add_particles(ogive_world* world, const char* name, const ogive_body_def* def,
                                                 int64_t count, const double* xyz, const double* volume,
                                                 ogive_body_id* id);
+
+/* The motion of a rigid body with prescribed motion in place of a constant one: `count` >= 1 ascending times [T], velocities
+ * [L/T] of the reference point (angular_centre at time 0) and angular velocities [1/T], 3 * count each; NULL: zero. Linear
+ * between the times, constant before the first and after the last. */
+OGIVE_API ogive_status ogive_body_set_motion(ogive_world* world, ogive_body_id body, int32_t count, const double* time,
+                                             const double* velocity, const double* angular_velocity);
 
 /* Built-in solids. Each is defined in its own axes with the origin at `centre`; axis 3 (z) is the axis of revolution. */
 enum {
@@ -271,11 +296,20 @@ OGIVE_API ogive_status ogive_solid_particles(ogive_world* world, const ogive_sol
 enum {
   OGIVE_CONTACT_SINGLE_FIELD = 0, /* standard MPM: one velocity field, no slip, no separation */
   OGIVE_CONTACT_HUANG_FIRST = 1,  /* Huang et al. 2010, section 3.1: on the deformed grid */
-  OGIVE_CONTACT_HUANG_SECOND = 2  /* Huang et al. 2010, section 3.2: also on the redefined grid */
+  OGIVE_CONTACT_HUANG_SECOND = 2, /* Huang et al. 2010, section 3.2: also on the redefined grid */
+  OGIVE_CONTACT_YORK = 3,         /* York, Sulsky, Schreyer 1999: standard MPM while bodies approach, free departure; no
+                                     friction coefficient */
+  OGIVE_CONTACT_HU_CHEN = 4,      /* Hu, Chen 2003: common normal velocity, own tangential velocities; no friction */
+  OGIVE_CONTACT_BARDENHAGEN_2000 = 5, /* Bardenhagen, Brackbill, Sulsky 2000: both bodies approach by their own normals */
+  OGIVE_CONTACT_BARDENHAGEN_2001 = 6, /* Bardenhagen et al. 2001: and are released once the normal traction pulls */
+  OGIVE_CONTACT_PAN_2008 = 7      /* Pan et al. 2008: equal normal accelerations, while the force pushes */
 };
 enum {
   OGIVE_NORMAL_MASTER = 0, /* the master body's mass gradient, Eq. (9) and choices 1, 2 of section 2.3 */
-  OGIVE_NORMAL_AVERAGE = 1 /* Eq. (10) */
+  OGIVE_NORMAL_AVERAGE = 1, /* Eq. (10) */
+  OGIVE_NORMAL_VOLUME_GRADIENT = 2, /* difference of the gradients of volume at rest */
+  OGIVE_NORMAL_OCCUPIED_CELL = 3,   /* Pan et al. 2008: from the cells around the node that hold particles */
+  OGIVE_NORMAL_LOGISTIC_REGRESSION = 4 /* Nairn, Hammerquist, Smith 2020: most probable plane between the particles */
 };
 enum {
   OGIVE_DETECTION_SHARED_NODE = 0, /* the papers: both bodies reach the node */
@@ -284,7 +318,8 @@ enum {
 };
 typedef struct ogive_contact_def {
   uint32_t struct_size;
-  int32_t method;       /* OGIVE_CONTACT_*; one for the whole world, ignored by ogive_contact_set_pair. Default second */
+  int32_t method;       /* OGIVE_CONTACT_*. Default second. single_field as the rule of a pair among others holds the
+                           pair without slip and separation at every node that both reach */
   int32_t normal;       /* OGIVE_NORMAL_*. Default average */
   ogive_body_id master; /* with OGIVE_NORMAL_MASTER. In ogive_world_set_contact -1 means: the first body of each pair */
   double friction;      /* Coulomb coefficient [-] >= 0. Default 0 */
@@ -295,9 +330,30 @@ typedef struct ogive_contact_def {
 OGIVE_API void ogive_contact_def_init(ogive_contact_def* def, size_t size);
 /* The rule for all pairs; call before bodies or after, but before ogive_world_prepare. */
 OGIVE_API ogive_status ogive_world_set_contact(ogive_world* world, const ogive_contact_def* def);
-/* Another rule for one pair (either order). */
+/* Another rule, method included, for one pair (either order). */
 OGIVE_API ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id a, ogive_body_id b,
                                               const ogive_contact_def* def);
+/* The methods and rules for normals that this library has, by their values from 0; names as in scenes ("huang_second"), which
+ * live for ever, NULL out of range. */
+OGIVE_API int32_t ogive_contact_method_count(void);
+OGIVE_API const char* ogive_contact_method_name(int32_t method);
+OGIVE_API int32_t ogive_contact_normal_count(void);
+OGIVE_API const char* ogive_contact_normal_name(int32_t normal);
+
+/* A rigid wall at rest: the half space beyond the plane. Bodies in front of it and rigid ones that are free meet it by
+ * contact; bodies with a prescribed motion do not. What it gives is in the ledger's boundary_impulse. */
+typedef struct ogive_wall_def {
+  uint32_t struct_size;
+  int32_t method;     /* OGIVE_CONTACT_*. Default second */
+  double point[3];    /* [L] on the plane. Default 0 */
+  double normal[3];   /* [-] towards the bodies, any length > 0. Default (0,0,1) */
+  double friction;    /* Coulomb coefficient [-] >= 0. Default 0 */
+  int32_t detection;  /* OGIVE_DETECTION_*. Default gap: between the body's surface at the node and the plane */
+  int32_t reserved0;
+  double gap_offset;  /* [-] cells, -2..2. Default 0.3 */
+} ogive_wall_def;
+OGIVE_API void ogive_wall_def_init(ogive_wall_def* def, size_t size);
+OGIVE_API ogive_status ogive_wall_add(ogive_world* world, const ogive_wall_def* def);
 
 /* ------------------------------------------------------------------------------------------------------ stop conditions */
 
@@ -361,7 +417,7 @@ OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_prog
 
 /* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
  *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation
- *            + transfer_dissipation - external_work
+ *            + transfer_dissipation - external_work - prescribed_work
  *   residual = total - initial_total; what no term accounts for
  * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
  * Particles lose less than that (they carry motion that the grid does not see), so these are indicators and part of no
@@ -374,7 +430,7 @@ typedef struct ogive_ledger {
   double left_domain_mass;     /* [M] */
   double momentum[3];          /* [M L/T] in the domain */
   double left_domain_momentum[3];
-  double boundary_impulse[3];  /* [M L/T] given to the material by faces and clamps */
+  double boundary_impulse[3];  /* [M L/T] given to the material by faces, clamps, walls and what guides prescribed motion */
   double external_impulse[3];  /* by gravity */
   double kinetic;              /* [M L2/T2] with that of the particles' affine velocities */
   double internal;             /* elastic + plastic + thermal */
@@ -394,6 +450,10 @@ typedef struct ogive_ledger {
   double residual_relative;    /* residual / initial_total (0 where that is 0) */
   double maximum_speed;        /* [L/T] fastest particle now */
   double maximum_speed_ever;   /* [L/T] fastest particle in any step so far */
+  double prescribed_work;      /* by what guides the rigid bodies with prescribed motion; its impulse is in boundary_impulse */
+  double angular_momentum[3];  /* [M L2/T] in the domain, about the origin, with that of affine velocities */
+  double contact_couple[3];    /* [M L2/T] given to free rigid bodies because contact acts on them at the surface, and on a
+                                  deformable body at the node: angular_momentum less this is what contact conserves */
 } ogive_ledger;
 OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);
 
@@ -424,6 +484,8 @@ typedef struct ogive_body_result {
   double lower[3], upper[3];    /* [L] bounding box of particle centres */
   double maximum_plastic_strain;/* [-] */
   double maximum_temperature;   /* [K], 0 where none is kept */
+  double angular_momentum[3];   /* [M L2/T] about `centre` */
+  double angular_velocity[3];   /* [1/T] of a rigid body, otherwise 0 */
 } ogive_body_result;
 OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id body, ogive_body_result* result);
 
@@ -433,7 +495,8 @@ OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_bod
  *   pressure 1, von_mises 1, energy 1 (internal, per particle), plastic_strain 1, temperature 1, failed 1 (0 or 1),
  *   number 1 (0-based particle number), deformation_gradient 9 (row by row), affine_velocity 9 (dv_i/dx_j of the particle's
  *   own velocity field, row by row; its kinetic energy is mass h^2/8 times the sum of the squares)
- * A body has only the fields that its material and the transfer need: asking for another is OGIVE_ERROR_ARGUMENT. */
+ * A body has only the fields that its material and the transfer need (a rigid one position, velocity, mass, volume and
+ * number): asking for another is OGIVE_ERROR_ARGUMENT. */
 OGIVE_API int32_t ogive_field_count(const ogive_world* world, ogive_body_id body);
 /* Name (lives as long as the world) and components of field `index`, NULL if out of range. */
 OGIVE_API const char* ogive_field_name(const ogive_world* world, ogive_body_id body, int32_t index, int32_t* components);

@@ -27,6 +27,7 @@ class Builder {
     for (const MaterialScene& material : scene_.materials) add_material(material);
     for (const BodyScene& body : scene_.bodies) add_body(body);
     set_contact();
+    for (size_t i = 0; i < scene_.walls.size(); ++i) add_wall(i);
     for (size_t i = 0; i < scene_.clamps.size(); ++i) add_clamp(i);
     set_stop();
     prepare();
@@ -71,6 +72,7 @@ class Builder {
     assign(def.transfer, scene_.numerics.transfer);
     assign(def.update_order, scene_.numerics.update_order);
     assign(def.pic_fraction, scene_.numerics.pic_fraction);
+    assign(def.xpic_order, scene_.numerics.xpic_order);
     require(ogive_world_set_numerics(world_.get(), &def), "numerics");
   }
 
@@ -116,6 +118,7 @@ class Builder {
     assign(def.velocity, body.velocity);
     assign(def.angular_velocity, body.angular_velocity);
     assign(def.angular_centre, body.angular_centre);
+    assign(def.formulation, body.formulation);
     ogive_body_id id{-1};
     if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
       ogive_solid_def shape;
@@ -136,6 +139,19 @@ class Builder {
               path);
     }
     body_ids_.push_back(id);
+    if (!body.motion.empty()) set_motion(body, id, path);
+  }
+
+  void set_motion(const BodyScene& body, ogive_body_id id, const std::string& path) {
+    std::vector<double> time, velocity, angular_velocity;
+    for (const MotionScene& at : body.motion) {
+      time.push_back(at.time);
+      velocity.insert(velocity.end(), at.velocity.begin(), at.velocity.end());
+      angular_velocity.insert(angular_velocity.end(), at.angular_velocity.begin(), at.angular_velocity.end());
+    }
+    require(ogive_body_set_motion(world_.get(), id, static_cast<int32_t>(time.size()), time.data(), velocity.data(),
+                                  angular_velocity.data()),
+            path + ".motion");
   }
 
   ParticleList particles_of(const BodyScene& body, const std::string& path) {
@@ -172,6 +188,19 @@ class Builder {
       require(ogive_contact_set_pair(world_.get(), body_id(pair.bodies[0]), body_id(pair.bodies[1]), &pair_def),
               child_path("contact.pairs", i));
     }
+  }
+
+  void add_wall(size_t index) {
+    const WallScene& wall = scene_.walls[index];
+    ogive_wall_def def;
+    ogive_wall_def_init(&def, sizeof def);
+    assign(def.point, wall.point);
+    assign(def.normal, wall.normal);
+    assign(def.method, wall.rule.method);
+    assign(def.friction, wall.rule.friction);
+    assign(def.detection, wall.rule.detection);
+    assign(def.gap_offset, wall.rule.gap_offset);
+    require(ogive_wall_add(world_.get(), &def), child_path("walls", index));
   }
 
   void add_clamp(size_t index) {

@@ -102,11 +102,14 @@ void add_ledger(Row& row, const ogive_ledger& ledger) {
   row.add("contact_work", ledger.contact_work);
   row.add("boundary_work", ledger.boundary_work);
   row.add("external_work", ledger.external_work);
+  row.add("prescribed_work", ledger.prescribed_work);
   row.add("total", ledger.total);
   row.add("residual", ledger.residual);
   row.add("residual_relative", ledger.residual_relative);
   row.add("maximum_speed", ledger.maximum_speed);
   row.add("maximum_speed_ever", ledger.maximum_speed_ever);
+  row.add("angular_momentum", ledger.angular_momentum);
+  row.add("contact_couple", ledger.contact_couple);
 }
 
 void add_body(Row& row, const std::string& name, const ogive_body_result& body) {
@@ -124,6 +127,8 @@ void add_body(Row& row, const std::string& name, const ogive_body_result& body) 
   row.add(name + ".failure_loss", body.failure_loss);
   row.add(name + ".maximum_plastic_strain", body.maximum_plastic_strain);
   row.add(name + ".maximum_temperature", body.maximum_temperature);
+  row.add(name + ".angular_momentum", body.angular_momentum);
+  row.add(name + ".angular_velocity", body.angular_velocity);
 }
 
 /// Number of the first output that is due after `time`.
@@ -157,6 +162,8 @@ Json body_json(const ogive_body_result& body) {
   json["left_domain_mass"] = body.left_domain_mass;
   json["maximum_plastic_strain"] = body.maximum_plastic_strain;
   json["maximum_temperature"] = body.maximum_temperature;
+  json["angular_momentum"] = json_of(body.angular_momentum);
+  json["angular_velocity"] = json_of(body.angular_velocity);
   return json;
 }
 
@@ -173,6 +180,7 @@ Json energy_json(const ogive_ledger& ledger) {
   json["contact_work"] = ledger.contact_work;
   json["boundary_work"] = ledger.boundary_work;
   json["external_work"] = ledger.external_work;
+  json["prescribed_work"] = ledger.prescribed_work;
   json["total"] = ledger.total;
   json["initial_total"] = ledger.initial_total;
   json["residual"] = ledger.residual;

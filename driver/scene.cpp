@@ -117,7 +117,7 @@ NumericsScene read_numerics(const Section& root) {
   NumericsScene numerics;
   const auto section = root.optional_table(
       "numerics", Names{"shape_function", "time_step_factor", "maximum_time_step", "threads", "gravity", "transfer",
-                        "update_order", "pic_fraction"});
+                        "update_order", "pic_fraction", "xpic_order"});
   if (!section) return numerics;
   numerics.shape_function = section->optional_choice(
       "shape_function", {{"linear", OGIVE_SHAPE_LINEAR}, {"quadratic_bspline", OGIVE_SHAPE_QUADRATIC_BSPLINE}});
@@ -130,40 +130,58 @@ NumericsScene read_numerics(const Section& root) {
   numerics.gravity = section->optional_vector("gravity").value_or(Vector3{});
   numerics.transfer = section->optional_choice("transfer", {{"flip", OGIVE_TRANSFER_FLIP},
                                                             {"affine_flip", OGIVE_TRANSFER_AFFINE_FLIP},
-                                                            {"apic", OGIVE_TRANSFER_APIC}});
-  numerics.update_order = section->optional_choice(
-      "update_order", {{"stress_first", OGIVE_UPDATE_STRESS_FIRST}, {"stress_last", OGIVE_UPDATE_STRESS_LAST}});
+                                                            {"apic", OGIVE_TRANSFER_APIC},
+                                                            {"xpic", OGIVE_TRANSFER_XPIC}});
+  numerics.update_order =
+      section->optional_choice("update_order", {{"stress_first", OGIVE_UPDATE_STRESS_FIRST},
+                                                {"stress_last", OGIVE_UPDATE_STRESS_LAST},
+                                                {"stress_last_as_is", OGIVE_UPDATE_STRESS_LAST_AS_IS}});
+  if (const auto order = section->optional_integer("xpic_order", 1, 20)) {
+    if (numerics.transfer != OGIVE_TRANSFER_XPIC) section->refuse("xpic_order", "needs transfer = \"xpic\"");
+    numerics.xpic_order = static_cast<int32_t>(*order);
+  }
   const Range part = {[](double value) { return value >= 0 && value <= 1; }, "between 0 and 1"};
   numerics.pic_fraction = section->optional_number("pic_fraction", part);
   return numerics;
 }
 
-/// Keys that a pair may change; the method is one for the whole scene.
-const Names kContactRuleKeys = {"normal", "master", "friction", "detection", "gap_offset"};
+const Names kContactRuleKeys = {"method", "normal", "master", "friction", "detection", "gap_offset"};
 
-void read_contact_rule(const Section& section, const Names& bodies, ContactScene& rule) {
-  const auto normal =
-      section.optional_choice("normal", {{"master", OGIVE_NORMAL_MASTER}, {"average", OGIVE_NORMAL_AVERAGE}});
+/// The engine's own list: its values are their places in it.
+Choices named(int32_t count, const char* (*name)(int32_t)) {
+  Choices choices;
+  for (int32_t i = 0; i < count; ++i) choices.emplace_back(name(i), i);
+  return choices;
+}
+
+/// What walls have as well as pairs.
+void read_contact_law(const Section& section, ContactScene& rule) {
+  const auto method =
+      section.optional_choice("method", named(ogive_contact_method_count(), ogive_contact_method_name));
   const auto detection = section.optional_choice(
       "detection", {{"shared_node", OGIVE_DETECTION_SHARED_NODE}, {"gap", OGIVE_DETECTION_GAP}});
   const Range offset = {[](double value) { return value >= -2 && value <= 2; }, "between -2 and 2 (cells)"};
   const auto friction = section.optional_number("friction", kNotNegative);
   const auto gap_offset = section.optional_number("gap_offset", offset);
-  const auto master = section.optional_text("master");
-  if (master) require_known_name(section, "master", "body", *master, bodies);
-  if (normal) rule.normal = normal;
+  if (method) rule.method = method;
   if (detection) rule.detection = detection;
   if (friction) rule.friction = friction;
   if (gap_offset) rule.gap_offset = gap_offset;
+}
+
+void read_contact_rule(const Section& section, const Names& bodies, ContactScene& rule) {
+  read_contact_law(section, rule);
+  const auto normal =
+      section.optional_choice("normal", named(ogive_contact_normal_count(), ogive_contact_normal_name));
+  const auto master = section.optional_text("master");
+  if (master) require_known_name(section, "master", "body", *master, bodies);
+  if (normal) rule.normal = normal;
   if (master) rule.master = master;
 }
 
 void read_contact(const Section& root, const Names& bodies, Scene& scene) {
-  const auto section = root.optional_table("contact", Names{"method"} + kContactRuleKeys + Names{"pairs"});
+  const auto section = root.optional_table("contact", kContactRuleKeys + Names{"pairs"});
   if (!section) return;
-  scene.contact.method = section->optional_choice("method", {{"single_field", OGIVE_CONTACT_SINGLE_FIELD},
-                                                             {"huang_first", OGIVE_CONTACT_HUANG_FIRST},
-                                                             {"huang_second", OGIVE_CONTACT_HUANG_SECOND}});
   read_contact_rule(*section, bodies, scene.contact);
   for (const Section& pair_section : section->tables("pairs", Names{"bodies"} + kContactRuleKeys)) {
     ContactPairScene pair;
@@ -182,6 +200,21 @@ void read_contact(const Section& root, const Names& bodies, Scene& scene) {
     }
     read_contact_rule(pair_section, pair_bodies, pair.rule);
     scene.contact_pairs.push_back(pair);
+  }
+}
+
+void read_walls(const Section& root, Scene& scene) {
+  for (const Section& section :
+       root.tables("walls", Names{"point", "normal", "method", "friction", "detection", "gap_offset"})) {
+    WallScene wall;
+    wall.point = section.vector("point");
+    section.vector("normal");  // needed
+    wall.normal = *section.optional_direction("normal");
+    wall.rule = scene.contact;
+    // Bodies that share one velocity field slide on a wall all the same, unless the wall itself asks for more.
+    if (wall.rule.method == OGIVE_CONTACT_SINGLE_FIELD) wall.rule.method.reset();
+    read_contact_law(section, wall.rule);
+    scene.walls.push_back(wall);
   }
 }
 
@@ -358,7 +391,7 @@ MeshShape read_mesh(const Section& body, const std::filesystem::path& scene_file
 BodyScene read_body(const Section& bodies, const std::string& name, const Names& materials,
                     const std::filesystem::path& scene_file) {
   const Names shapes = {"mesh", "box", "cylinder", "sphere", "ogive_rod", "particles"};
-  const Names motion = {"material", "velocity", "angular_velocity", "angular_centre"};
+  const Names motion = {"material", "velocity", "angular_velocity", "angular_centre", "formulation", "motion"};
   const Names mesh_keys = {"axis",         "reference",         "position",      "scale",
                            "lattice_axis", "lattice_reference", "lattice_origin"};
   // The full list first, so that a slip in the shape's own key is not taken for a missing shape.
@@ -389,6 +422,29 @@ BodyScene read_body(const Section& bodies, const std::string& name, const Names&
   body.velocity = any_shape.optional_vector("velocity").value_or(Vector3{});
   body.angular_velocity = any_shape.optional_vector("angular_velocity").value_or(Vector3{});
   body.angular_centre = any_shape.optional_vector("angular_centre").value_or(Vector3{});
+  body.formulation =
+      any_shape.optional_choice("formulation", {{"deformable", OGIVE_FORMULATION_DEFORMABLE},
+                                                {"rigid", OGIVE_FORMULATION_RIGID_FREE},
+                                                {"rigid_prescribed", OGIVE_FORMULATION_RIGID_PRESCRIBED}});
+  for (const Section& knot : any_shape.tables("motion", Names{"time", "velocity", "angular_velocity"})) {
+    if (body.formulation != OGIVE_FORMULATION_RIGID_PRESCRIBED) {
+      any_shape.refuse("motion", "needs formulation = \"rigid_prescribed\"");
+    }
+    MotionScene at;
+    at.time = knot.number("time", kAnyNumber);
+    if (!body.motion.empty() && !(at.time > body.motion.back().time)) {
+      knot.refuse("time", "must be > the time before it (" + shortest(body.motion.back().time) + "), got " +
+                              shortest(at.time));
+    }
+    at.velocity = knot.optional_vector("velocity").value_or(Vector3{});
+    at.angular_velocity = knot.optional_vector("angular_velocity").value_or(Vector3{});
+    body.motion.push_back(at);
+  }
+  if (!body.motion.empty()) {
+    for (const std::string key : {"velocity", "angular_velocity"}) {
+      if (any_shape.has(key)) any_shape.refuse(key, "cannot be with motion, which gives it for every time");
+    }
+  }
   return body;
 }
 
@@ -497,8 +553,8 @@ OutputScene read_output(const Section& root, const Names& bodies, double stop_ti
 Scene read_scene(const Document& document, const std::filesystem::path& file) {
   const Expressions no_expressions;
   const Section bare_root(document, no_expressions, document.root(), "",
-                          Names{"title", "parameters", "units", "grid", "numerics", "contact", "materials", "bodies",
-                                "clamps", "stop", "output"});
+                          Names{"title", "parameters", "units", "grid", "numerics", "contact", "walls", "materials",
+                                "bodies", "clamps", "stop", "output"});
   const Expressions expressions = read_parameters(document, bare_root);
   const Section root(document, expressions, document.root(), "", std::nullopt);
 
@@ -515,6 +571,7 @@ Scene read_scene(const Document& document, const std::filesystem::path& file) {
   scene.bodies = read_bodies(root, names_of(scene.materials), file);
   const Names bodies = names_of(scene.bodies);
   read_contact(root, bodies, scene);
+  read_walls(root, scene);
   scene.clamps = read_clamps(root, bodies);
   scene.stop = read_stop(root, bodies);
   scene.output = read_output(root, bodies, scene.stop.time);

@@ -34,6 +34,7 @@ struct NumericsScene {
   std::optional<int32_t> transfer;
   std::optional<int32_t> update_order;
   std::optional<double> pic_fraction;
+  std::optional<int32_t> xpic_order;
 };
 
 struct ContactScene {
@@ -48,6 +49,12 @@ struct ContactScene {
 struct ContactPairScene {
   std::array<std::string, 2> bodies;
   ContactScene rule;  // the scene's contact with this pair's changes
+};
+
+/// A rigid plane. Its rule's normal and master mean nothing.
+struct WallScene {
+  Vector3 point{}, normal{};
+  ContactScene rule;  // the scene's contact with this wall's changes
 };
 
 struct MaterialScene {
@@ -88,9 +95,17 @@ struct ParticleFileShape {
   std::filesystem::path file;
 };
 
+/// The motion of a rigid body at one time.
+struct MotionScene {
+  double time = 0;
+  Vector3 velocity{}, angular_velocity{};
+};
+
 struct BodyScene {
   std::string name;
   std::string material;
+  std::optional<int32_t> formulation;
+  std::vector<MotionScene> motion;  // empty: a constant one
   Vector3 velocity{}, angular_velocity{}, angular_centre{};
   std::variant<MeshShape, SolidShape, ParticleFileShape> shape;
 };
@@ -135,6 +150,7 @@ struct Scene {
   NumericsScene numerics;
   ContactScene contact;
   std::vector<ContactPairScene> contact_pairs;
+  std::vector<WallScene> walls;
   std::vector<MaterialScene> materials;  // in the order of the file
   std::vector<BodyScene> bodies;         // in the order of the file
   std::vector<ClampScene> clamps;

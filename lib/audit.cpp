@@ -17,6 +17,7 @@ double affine_energy(const BodyState& body, std::int64_t p, double cell_size) {
 BodyAudit audit_body(const Model& model, const State& state, int index) {
   const BodyState& body = state.bodies[index];
   const double density = model.material_of(index).density;
+  const Body& rules = model.bodies[index];
   BodyAudit audit;
   audit.lower.fill(body.particles > 0 ? std::numeric_limits<double>::infinity() : 0);
   audit.upper.fill(body.particles > 0 ? -std::numeric_limits<double>::infinity() : 0);
@@ -34,6 +35,7 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
       part.mass += mass;
       part.kinetic += mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
       part.internal += mass * body.energy[p];
+      add(part.angular_momentum, times(mass, cross({x[0], x[1], x[2]}, {v[0], v[1], v[2]})));
       for (int c = 0; c < 3; ++c) {
         part.momentum[c] += mass * v[c];
         part.first_moment[c] += mass * x[c];
@@ -43,15 +45,22 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
     }
     part.kinetic *= 0.5;
     part.internal /= density;
+    if (rules.rigid()) {
+      part.kinetic += 0.5 * part.mass * rules.own_inertia * dot(body.rigid.spin, body.rigid.spin);
+      add(part.angular_momentum, times(part.mass * rules.own_inertia, body.rigid.spin));
+    }
     if (affine) {
       double sum = 0;
+      Vector3 curl{};
       for (std::int64_t p = group.begin; p < end; ++p) {
         const double* C = &body.affine[affine_size * p];
         double rows[3];
         for (int i = 0; i < 3; ++i) rows[i] = C[3 * i] * C[3 * i] + C[3 * i + 1] * C[3 * i + 1] + C[3 * i + 2] * C[3 * i + 2];
         sum += body.position[4 * p + 3] * (rows[0] + rows[1] + rows[2]);
+        add(curl, times(body.position[4 * p + 3], {C[3 + 2] - C[6 + 1], C[6 + 0] - C[0 + 2], C[0 + 1] - C[3 + 0]}));
       }
       part.kinetic += affine_factor * sum;
+      add(part.angular_momentum, times(2 * affine_factor, curl));
     }
     if (plastic)
       for (std::int64_t p = group.begin; p < end; ++p)
@@ -66,6 +75,7 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
     audit.internal += part.internal;
     for (int c = 0; c < 3; ++c) {
       audit.momentum[c] += part.momentum[c];
+      audit.angular_momentum[c] += part.angular_momentum[c];
       audit.first_moment[c] += part.first_moment[c];
     }
   }
@@ -74,7 +84,8 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
 
 double total_energy(const Model& model, const State& state) {
   double total =
-      state.ledger.friction_dissipation + state.ledger.transfer_dissipation - state.ledger.external_work;
+      state.ledger.friction_dissipation + state.ledger.transfer_dissipation - state.ledger.external_work -
+      state.ledger.prescribed_work;
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
     const BodyAudit audit = audit_body(model, state, b);
     const BodyTotals& totals = state.bodies[b].totals;

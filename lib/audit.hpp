@@ -10,6 +10,7 @@ namespace ogive {
 struct BodyAudit {
   double mass = 0, kinetic = 0, internal = 0;
   Vector3 momentum{}, first_moment{};
+  Vector3 angular_momentum{};  // about the origin, with that of affine velocities and of rigid particles themselves
   Vector3 lower{}, upper{};
   double maximum_plastic_strain = 0, maximum_temperature = 0;
 };
@@ -18,7 +19,8 @@ BodyAudit audit_body(const Model& model, const State& state, int body);
 // Kinetic energy of a particle's affine velocity field, m h^2/8 |C|^2.
 double affine_energy(const BodyState& body, std::int64_t particle, double cell_size);
 
-// kinetic + internal + failure loss + energy that left + friction heat + transfer dissipation - external work, of all bodies.
+// kinetic + internal + failure loss + energy that left + friction heat + transfer dissipation - external work
+// - work of prescribed motion, of all bodies.
 double total_energy(const Model& model, const State& state);
 
 // Momentum of the centre of mass alone, for the stop condition.

@@ -279,15 +279,20 @@ void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable&
                     : static_cast<std::int32_t>(std::lround((grid.domain_max[axis] - grid.domain_min[axis]) / grid.cell_size));
       const std::int32_t ghost = side == 0 ? plane - 1 : plane + 1;
       const std::int32_t image = 2 * plane - ghost;
-      const auto visit_layer = [&](std::int32_t coordinate, auto&& visit) {
+      const auto visit_layer = [&](std::int32_t coordinate, bool rigid, auto&& visit) {
         for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+          if ((workspace.slots[s].rigid >= 0) != rigid) continue;
           if (workspace.slots[s].block[axis] != floor_div4(coordinate)) continue;
           for (int n = 0; n < block_nodes; ++n)
             if (((n >> (2 * axis)) & 3) == (coordinate & 3)) visit(s, n);
         }
       };
-      visit_layer(plane, [&](std::size_t s, int n) { face.plane.push_back(static_cast<std::int64_t>(s) * block_nodes + n); });
-      visit_layer(ghost, [&](std::size_t s, int n) {
+      for (const bool rigid : {false, true}) {
+        visit_layer(plane, rigid,
+                    [&](std::size_t s, int n) { face.plane.push_back(static_cast<std::int64_t>(s) * block_nodes + n); });
+        if (!rigid) face.moving_plane = face.plane.size();
+      }
+      const auto mirror = [&](std::size_t s, int n) {
         std::array<std::int32_t, 3> block = workspace.slots[s].block;
         block[axis] = floor_div4(image);
         const std::int32_t other = table.find(block_key(block, workspace.slots[s].field));
@@ -297,7 +302,11 @@ void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable&
         pair.ghost = static_cast<std::int64_t>(s) * block_nodes + n;
         pair.image = static_cast<std::int64_t>(other) * block_nodes + node;
         face.pairs.push_back(pair);
-      });
+      };
+      for (const bool rigid : {false, true}) {
+        visit_layer(ghost, rigid, mirror);
+        if (!rigid) face.moving_pairs = face.pairs.size();
+      }
       workspace.faces.push_back(std::move(face));
     }
 }
@@ -318,11 +327,26 @@ bool in_region(const Clamp& clamp, const Vector3& x) {
   return squared >= clamp.radius * clamp.radius;
 }
 
+// Whether a block's nodes are where a wall is felt: nearer than a shape function reaches, or behind it.
+bool at_wall(const Model& model, const std::array<std::int32_t, 3>& block) {
+  const double h = model.grid.cell_size, reach = 1.5 * h;
+  for (const Wall& wall : model.walls) {
+    double distance = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int nearest = wall.normal[axis] > 0 ? 0 : 3;
+      distance += wall.normal[axis] * (model.grid.domain_min[axis] + h * (4 * block[axis] + nearest) - wall.point[axis]);
+    }
+    if (distance < reach) return true;
+  }
+  return false;
+}
+
 void find_clamp_nodes(const Model& model, Workspace& workspace) {
   workspace.clamps.clear();
   for (const Clamp& clamp : model.clamps)
     for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
       const Slot& slot = workspace.slots[s];
+      if (slot.rigid >= 0) continue;  // its motion is prescribed or free
       if (clamp.body >= 0 && slot.field != model.field_of(clamp.body)) continue;
       for (int n = 0; n < block_nodes; ++n) {
         Vector3 x;
@@ -382,6 +406,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
       const Group& group = state.bodies[b].groups[g];
       GroupLinks link;
       link.body = b;
+      link.rigid = model.bodies[b].rigid();
       link.group = static_cast<std::int32_t>(g);
       for (int axis = 0; axis < 3; ++axis) {
         link.tile_low[axis] = group.low[axis];
@@ -433,6 +458,17 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
       });
     }
   }
+  workspace.rigid.clear();
+  std::vector<std::int32_t> rigid_of(model.bodies.size(), -1);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (!model.bodies[b].rigid()) continue;
+    rigid_of[b] = static_cast<std::int32_t>(workspace.rigid.size());
+    workspace.rigid.emplace_back();
+    workspace.rigid.back().body = static_cast<std::int32_t>(b);
+    workspace.rigid.back().prescribed = model.bodies[b].prescribed();
+  }
+  for (Slot& slot : found)
+    if (model.rigid_field(slot.field)) slot.rigid = rigid_of[slot.field];
   std::sort(found.begin(), found.end(), [](const Slot& a, const Slot& b) {
     return block_key(a.block, a.field) < block_key(b.block, b.field);
   });
@@ -454,7 +490,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   for (std::int32_t s = 0, n = static_cast<std::int32_t>(workspace.slots.size()); s < n;) {
     std::int32_t end = s + 1;
     while (end < n && workspace.slots[end].block == workspace.slots[s].block) ++end;
-    if (end - s > 1) {
+    if (end - s > 1 || at_wall(model, workspace.slots[s].block)) {
       workspace.mixed.push_back({s, end - s});
       for (std::int32_t i = s; i < end; ++i) workspace.slots[i].contact = contacts++;
     }
@@ -471,10 +507,25 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
     for (const std::int32_t s : link.slot)
       if (s >= 0 && workspace.slots[s].contact >= 0) link.contact = true;
   find_clamp_nodes(model, workspace);
+  if (workspace.contact_needs.cloud) {
+    workspace.slot_links_begin.assign(workspace.slots.size() + 1, 0);
+    for (const GroupLinks& link : workspace.links)
+      for (const std::int32_t s : link.slot)
+        if (s >= 0) ++workspace.slot_links_begin[s + 1];
+    for (std::size_t s = 0; s < workspace.slots.size(); ++s)
+      workspace.slot_links_begin[s + 1] += workspace.slot_links_begin[s];
+    workspace.slot_links.resize(workspace.slot_links_begin.back());
+    std::vector<std::int32_t> next = workspace.slot_links_begin;
+    for (std::size_t l = 0; l < workspace.links.size(); ++l)
+      for (const std::int32_t s : workspace.links[l].slot)
+        if (s >= 0) workspace.slot_links[next[s]++] = static_cast<std::int32_t>(l);
+  }
 
   workspace.nodes.resize(workspace.slots.size() * block_nodes);
   workspace.contacts.resize(static_cast<std::size_t>(contacts) * block_nodes);
-  workspace.approach.resize(model.contact_method == ContactMethod::HuangSecond ? workspace.contacts.size() : 0);
+  workspace.contact_stress.resize(workspace.contact_needs.stress ? workspace.contacts.size() : 0);
+  workspace.occupied.resize(workspace.contact_needs.occupied ? workspace.contacts.size() : 0);
+  workspace.filter.resize(model.numerics.transfer == Transfer::Xpic ? workspace.nodes.size() : 0);
   workspace.kernel_groups.clear();
   for (const GroupLinks& link : workspace.links)
     workspace.kernel_groups.push_back(describe_group(model, state, workspace, link));
@@ -482,9 +533,10 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   workspace.move_sums.resize(workspace.links.size());
   workspace.slot_contact_force.resize(workspace.slots.size());
   workspace.slot_given.resize(workspace.slots.size());
-  workspace.displacement.resize(model.numerics.update_order == UpdateOrder::StressLast ? state.bodies.size() : 0);
+  workspace.displacement.resize(model.numerics.stress_first() ? 0 : state.bodies.size());
   for (std::size_t b = 0; b < workspace.displacement.size(); ++b)
-    workspace.displacement[b].resize(4 * static_cast<std::size_t>(state.bodies[b].padded));
+    if (!model.bodies[b].rigid())
+      workspace.displacement[b].resize(4 * static_cast<std::size_t>(state.bodies[b].padded));
   workspace.linked = true;
 }
 
@@ -544,9 +596,11 @@ KernelMaterial kernel_material(const Material& material, double cell_size) {
 
 std::int64_t Workspace::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
-  std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(approach) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
+  std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(contact_stress) + bytes(occupied) +
+                       bytes(filter) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
                        bytes(scratch);
+  for (const BlockContacts& block : block_contacts) total += bytes(block.fields) + bytes(block.pairs) + bytes(block.nodes);
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
   return total;
 }

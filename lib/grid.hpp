@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "contact/nodes.hpp"
 #include "model.hpp"
+#include "rigid/rigid_motion.hpp"
 #include "state.hpp"
 #include "transfer/kernels.hpp"
 
@@ -24,6 +26,7 @@ struct Slot {
   std::array<std::int32_t, 3> block{};
   std::int32_t field = 0;
   std::int32_t contact = -1;  // index of its contact records, in units of blocks; -1: none
+  std::int32_t rigid = -1;    // index in Workspace::rigid; -1: deformable
 };
 
 // A group of particles with its place on the grid.
@@ -33,6 +36,7 @@ struct GroupLinks {
   std::array<std::int32_t, 3> tile_low{}, tile_high{};
   Vector3 corner{};
   bool contact = false;  // some of its slots have contact records
+  bool rigid = false;
 };
 
 // Groups of all bodies in one row of blocks along x: worked on by one thread, in order. Pencils of one of the four colours
@@ -41,8 +45,17 @@ struct Pencil {
   std::int32_t begin = 0, end = 0;  // in Workspace::links
 };
 
+// A block where contact is looked for: of two fields or more, or at a wall.
 struct MixedBlock {
   std::int32_t first_slot = 0, count = 0;
+};
+
+// What the contact rules of a model ask for; see contact/method.hpp.
+struct ContactNeeds {
+  bool any = false;           // some pair of bodies has fields of its own, or there is a wall
+  bool start = false;         // some method acts at the beginning of the step
+  bool start_kept = false;    // and the particles never see it
+  bool stress = false, memory = false, occupied = false, cloud = false;
 };
 
 // A node beyond a mirror face and its image inside.
@@ -55,8 +68,10 @@ struct MirrorPair {
 struct FaceNodes {
   int axis = 0;
   bool fixed = false;
+  // Those of deformable bodies first: of rigid ones only mass and contact sums are mirrored, not motion.
   std::vector<MirrorPair> pairs;
   std::vector<std::int64_t> plane;
+  std::size_t moving_pairs = 0, moving_plane = 0;
 };
 
 struct ClampNode {
@@ -73,7 +88,8 @@ struct Workspace {
   std::vector<Slot> slots;                // ordered by block (z, y, x), then field
   AlignedVector<NodeRecord> nodes;        // 64 a slot
   AlignedVector<ContactRecord> contacts;  // 64 a slot that has them
-  std::vector<Vector3> approach;          // velocity that (25) took from the node; 64 a slot of a mixed block
+  AlignedVector<ContactStress> contact_stress;  // likewise, where a contact method asks for it
+  std::vector<std::uint8_t> occupied;     // likewise: which of a node's eight cells hold particles
   std::vector<GroupLinks> links;          // ordered by colour, pencil, body, block x
   std::vector<KernelGroup> kernel_groups; // what kernels are told of each link; all but the time step
   std::vector<Pencil> pencils;
@@ -82,6 +98,12 @@ struct Workspace {
   std::vector<FaceNodes> faces;
   std::vector<ClampNode> clamps;
   std::vector<KernelMaterial> materials;  // by body
+  ContactNeeds contact_needs;
+  std::vector<BlockContacts> block_contacts;  // of this step, one a mixed block (at least)
+  std::vector<std::int32_t> slot_links_begin, slot_links;  // links by slot that they reach; where a rule asks for particles
+  std::vector<RigidMotion> rigid;             // of this step, in the order of the rigid bodies
+  double rigid_speed = 0;                     // the fastest particle of them
+  AlignedVector<NodeRecord> filter;           // XPIC: one entry a node
 
   // One entry a link, filled by the kernels and summed in order.
   std::vector<StressSums> stress_sums;

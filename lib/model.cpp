@@ -1,10 +1,13 @@
 // Validation of the model: every message names the field, its value and what was expected.
 #include "model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "archive.hpp"
+#include "contact/method.hpp"
+#include "contact/normal.hpp"
 #include "error.hpp"
 
 namespace ogive {
@@ -93,10 +96,31 @@ void Material::validate() {
   require_not_negative("viscosity_quadratic", viscosity_quadratic);
 }
 
+namespace {
+
+bool before(const PairRule& first, const PairRule& second) {
+  return first.a != second.a ? first.a < second.a : first.b < second.b;
+}
+
+}  // namespace
+
 const ContactRule& Model::rule_of(int a, int b) const {
-  for (const PairRule& pair : pairs)
-    if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a)) return pair.rule;
-  return contact;
+  if (pairs.empty()) return contact;
+  PairRule wanted;
+  wanted.a = std::min(a, b);
+  wanted.b = std::max(a, b);
+  const auto found = std::lower_bound(pairs.begin(), pairs.end(), wanted, before);
+  return found != pairs.end() && found->a == wanted.a && found->b == wanted.b ? found->rule : contact;
+}
+
+void Model::set_pair(const PairRule& pair) {
+  PairRule ordered = pair;
+  if (ordered.a > ordered.b) std::swap(ordered.a, ordered.b);
+  const auto place = std::lower_bound(pairs.begin(), pairs.end(), ordered, before);
+  if (place != pairs.end() && place->a == ordered.a && place->b == ordered.b)
+    *place = ordered;
+  else
+    pairs.insert(place, ordered);
 }
 
 void Model::validate_grid() const {
@@ -125,9 +149,10 @@ void Model::validate_numerics() const {
           numerics.time_step_factor);
   require(numerics.maximum_time_step > 0, "maximum_time_step", "> 0", numerics.maximum_time_step);
   for (int axis = 0; axis < 3; ++axis) require_finite("gravity", numerics.gravity[axis]);
-  require_choice("transfer", numerics.transfer, 3);
+  require_choice("transfer", numerics.transfer, 4);
+  require(numerics.xpic_order >= 1 && numerics.xpic_order <= 20, "xpic_order", "1..20", numerics.xpic_order);
   require(numerics.pic_fraction >= 0 && numerics.pic_fraction <= 1, "pic_fraction", "between 0 and 1", numerics.pic_fraction);
-  require_choice("update_order", numerics.update_order, 2);
+  require_choice("update_order", numerics.update_order, 3);
 }
 
 void Model::validate_clamp(const Clamp& clamp) const {
@@ -148,15 +173,37 @@ void Model::validate_clamp(const Clamp& clamp) const {
 
 void Model::validate_contact(const ContactRule& rule, const char* where) const {
   const std::string prefix(where);
-  require_choice(prefix + "normal", rule.normal, 2);
+  require_choice(prefix + "method", rule.method, contact_method_count());
+  require_choice(prefix + "normal", rule.normal, normal_rule_count());
   require_choice(prefix + "detection", rule.detection, 2);
   require_not_negative(prefix + "friction", rule.friction);
   require(rule.gap_offset >= -2 && rule.gap_offset <= 2, prefix + "gap_offset", "-2..2", rule.gap_offset);
 }
 
-void Model::validate_all() const {
+void Model::validate_wall(const Wall& wall) const {
+  double squared = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    require_finite("wall point", wall.point[axis]);
+    squared += wall.normal[axis] * wall.normal[axis];
+  }
+  require(std::abs(squared - 1) < 1e-6, "wall normal", "a direction that is not zero", squared);
+  validate_contact(wall.rule, "wall ");
+}
+
+void Model::validate_motion(const std::vector<MotionKnot>& motion) const {
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    require_finite("motion time", motion[i].time);
+    require(i == 0 || motion[i].time > motion[i - 1].time, "motion time",
+            "above the one before it" + (i > 0 ? ", " + text(motion[i - 1].time) : ""), motion[i].time);
+    for (int axis = 0; axis < 3; ++axis) {
+      require_finite("motion velocity", motion[i].velocity[axis]);
+      require_finite("motion angular_velocity", motion[i].angular_velocity[axis]);
+    }
+  }
+}
+
+void Model::complete() {
   if (bodies.empty()) throw Error(ErrorKind::Argument, "bodies: at least one is needed, got none");
-  require_choice("contact method", contact_method, 3);
   validate_grid();
   validate_numerics();
   const auto known = [&](std::int32_t body, const std::string& field, bool none_allowed) {
@@ -172,8 +219,34 @@ void Model::validate_all() const {
         pair.rule.master != pair.b)
       refuse("contact pair master", "one of the pair", "body " + std::to_string(pair.rule.master));
   }
-  for (const Clamp& clamp : clamps) known(clamp.body, "clamp body", true);
+  for (const Clamp& clamp : clamps) {
+    known(clamp.body, "clamp body", true);
+    if (clamp.body >= 0 && bodies[clamp.body].rigid())
+      refuse("clamp body", "deformable (give a rigid body a prescribed motion instead)",
+             '"' + bodies[clamp.body].name + '"');
+  }
   known(stop.body, "stop body", true);
+
+  own_fields = contact.method != ContactMethod::SingleField && bodies.size() > 1;
+  for (const PairRule& pair : pairs) own_fields = own_fields || pair.rule.method != ContactMethod::SingleField;
+  bool deformable = false;
+  for (const Body& body : bodies) {
+    own_fields = own_fields || body.rigid();
+    deformable = deformable || !body.rigid();
+    if (body.rigid() && body.material < 0) refuse("material", "the id of a material", "-1");
+    if (body.prescribed())
+      for (const MotionKnot& knot : body.motion)
+        for (int axis = 0; axis < 3; ++axis) {
+          if (!body.cut[axis]) continue;
+          const Vector3 &v = knot.velocity, &w = knot.angular_velocity;
+          if (v[axis] != 0 || w[(axis + 1) % 3] != 0 || w[(axis + 2) % 3] != 0)
+            throw Error(ErrorKind::Argument, "body \"" + body.name + "\": its motion must fit the " + "xyz"[axis] +
+                                                 " symmetry face that cuts it (no velocity across, rotation about its normal "
+                                                 "alone)");
+        }
+  }
+  if (!deformable && !std::isfinite(numerics.maximum_time_step))
+    throw Error(ErrorKind::Argument, "maximum_time_step: must be given where every body is rigid (no wave limits the step)");
 }
 
 void Model::exchange(Archive& a) {
@@ -188,6 +261,7 @@ void Model::exchange(Archive& a) {
   a.value("model/numerics/transfer", numerics.transfer);
   a.value("model/numerics/pic_fraction", numerics.pic_fraction);
   a.value("model/numerics/update_order", numerics.update_order);
+  a.value("model/numerics/xpic_order", numerics.xpic_order);
 
   const auto count = [&](const char* name, auto& list, std::int32_t limit) {
     std::int32_t n = static_cast<std::int32_t>(list.size());
@@ -247,15 +321,27 @@ void Model::exchange(Archive& a) {
     const std::string at = "model/bodies/" + std::to_string(i) + "/";
     a.value(at + "name", bodies[i].name);
     a.value(at + "material", bodies[i].material);
+    a.value(at + "formulation", bodies[i].formulation);
+    if (!bodies[i].rigid()) continue;
+    a.value(at + "cut", bodies[i].cut);
+    a.value(at + "own_inertia", bodies[i].own_inertia);
+    a.value(at + "reference", bodies[i].reference);
+    count((at + "motion/count").c_str(), bodies[i].motion, 1000000);
+    for (std::size_t k = 0; k < bodies[i].motion.size(); ++k) {
+      const std::string knot = at + "motion/" + std::to_string(k) + "/";
+      a.value(knot + "time", bodies[i].motion[k].time);
+      a.value(knot + "velocity", bodies[i].motion[k].velocity);
+      a.value(knot + "angular_velocity", bodies[i].motion[k].angular_velocity);
+    }
   }
   const auto rule = [&](const std::string& at, ContactRule& r) {
+    a.value(at + "method", r.method);
     a.value(at + "normal", r.normal);
     a.value(at + "master", r.master);
     a.value(at + "friction", r.friction);
     a.value(at + "detection", r.detection);
     a.value(at + "gap_offset", r.gap_offset);
   };
-  a.value("model/contact/method", contact_method);
   rule("model/contact/", contact);
   count("model/contact/pairs/count", pairs, 1000000);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -264,6 +350,13 @@ void Model::exchange(Archive& a) {
     a.value(at + "b", pairs[i].b);
     rule(at, pairs[i].rule);
   }
+  count("model/walls/count", walls, 1000000);
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const std::string at = "model/walls/" + std::to_string(i) + "/";
+    a.value(at + "point", walls[i].point);
+    a.value(at + "normal", walls[i].normal);
+    rule(at + "rule/", walls[i].rule);
+  }
   a.value("model/stop/body", stop.body);
   a.value("model/stop/settle_window", stop.settle_window);
   a.value("model/stop/settle_tolerance", stop.settle_tolerance);
@@ -271,14 +364,22 @@ void Model::exchange(Archive& a) {
   a.value("model/stop/when_out", stop.when_out);
 
   if (a.loading()) {
-    for (const Body& body : bodies)
+    for (const Body& body : bodies) {
       if (body.material < 0 || body.material >= static_cast<std::int32_t>(materials.size()))
         throw Error(ErrorKind::Format, "model/bodies: material " + std::to_string(body.material) + " is unknown");
+      require_choice("formulation", body.formulation, 3);
+      validate_motion(body.motion);
+      if (body.prescribed() && body.motion.empty())
+        throw Error(ErrorKind::Format, "model/bodies: a prescribed motion is missing");
+    }
+    for (const Wall& wall : walls) validate_wall(wall);
+    if (!std::is_sorted(pairs.begin(), pairs.end(), before))
+      throw Error(ErrorKind::Format, "model/contact/pairs: must be in order");
     for (Material& m : materials) m.validate();
     for (const Clamp& clamp : clamps) validate_clamp(clamp);
     validate_contact(contact, "contact ");
     for (const PairRule& pair : pairs) validate_contact(pair.rule, "contact pair ");
-    validate_all();
+    complete();
   }
 }
 

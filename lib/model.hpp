@@ -11,21 +11,39 @@
 #include <string>
 #include <vector>
 
+#include "vector3.hpp"
+
 namespace ogive {
 
 class Archive;
 
-using Vector3 = std::array<double, 3>;
-
 enum class Face : std::int32_t { Free = 0, Symmetry = 1, Fixed = 2 };
 enum class ShapeFunction : std::int32_t { Linear = 0, QuadraticBSpline = 1 };
-enum class Transfer : std::int32_t { Flip = 0, AffineFlip = 1, Apic = 2 };
-enum class UpdateOrder : std::int32_t { StressFirst = 0, StressLast = 1 };
+enum class Transfer : std::int32_t { Flip = 0, AffineFlip = 1, Apic = 2, Xpic = 3 };
+// USF; MUSL, from momentum mapped once more; USL, from the velocities at the end of the step as they are.
+enum class UpdateOrder : std::int32_t { StressFirst = 0, StressLast = 1, StressLastAsIs = 2 };
 enum class Strength : std::int32_t { Elastic = 0, NeoHookean = 1, J2Power = 2, JohnsonCook = 3 };
 enum class EquationOfState : std::int32_t { Linear = 0, MieGruneisen = 1 };
 enum class Failure : std::int32_t { None = 0, PlasticStrain = 1 };
-enum class ContactMethod : std::int32_t { SingleField = 0, HuangFirst = 1, HuangSecond = 2 };
-enum class NormalRule : std::int32_t { Master = 0, Average = 1 };
+// Index into the registry of contact/method.hpp.
+enum class ContactMethod : std::int32_t {
+  SingleField = 0,
+  HuangFirst = 1,
+  HuangSecond = 2,
+  York = 3,
+  HuChen = 4,
+  Bardenhagen2000 = 5,
+  Bardenhagen2001 = 6,
+  Pan2008 = 7
+};
+enum class NormalRule : std::int32_t {
+  Master = 0,
+  Average = 1,
+  VolumeGradient = 2,
+  OccupiedCell = 3,
+  LogisticRegression = 4
+};
+enum class Formulation : std::int32_t { Deformable = 0, RigidFree = 1, RigidPrescribed = 2 };
 enum class Detection : std::int32_t { SharedNode = 0, Gap = 1 };
 enum class Region : std::int32_t { Box = 0, OutsideCylinder = 1 };
 
@@ -44,8 +62,10 @@ struct Numerics {
   Transfer transfer = Transfer::AffineFlip;
   double pic_fraction = 0;
   UpdateOrder update_order = UpdateOrder::StressFirst;
+  std::int32_t xpic_order = 2;
 
-  bool affine() const { return transfer != Transfer::Flip; }
+  bool affine() const { return transfer == Transfer::AffineFlip || transfer == Transfer::Apic; }
+  bool stress_first() const { return update_order == UpdateOrder::StressFirst; }
   // The part of a particle's new velocity that is the grid's own.
   double grid_velocity_fraction() const { return transfer == Transfer::Apic ? 1.0 : pic_fraction; }
 };
@@ -84,12 +104,29 @@ struct Material {
   void validate();
 };
 
+// Prescribed motion of a rigid body at one time; linear between, constant beyond.
+struct MotionKnot {
+  double time = 0;
+  Vector3 velocity{}, angular_velocity{};
+};
+
 struct Body {
   std::string name;
   std::int32_t material = -1;
+  Formulation formulation = Formulation::Deformable;
+
+  // Rigid bodies only. Symmetry faces that cut the body, by their axis: the body is the whole of it and its images.
+  std::array<std::int32_t, 3> cut{};
+  double own_inertia = 0;      // moment of inertia per mass of a particle about its own centre: s^2 / 6 of a cube
+  Vector3 reference{};         // prescribed: the point that moves with `velocity`, at time 0
+  std::vector<MotionKnot> motion;
+
+  bool rigid() const { return formulation != Formulation::Deformable; }
+  bool prescribed() const { return formulation == Formulation::RigidPrescribed; }
 };
 
 struct ContactRule {
+  ContactMethod method = ContactMethod::HuangSecond;
   NormalRule normal = NormalRule::Average;
   std::int32_t master = -1;
   double friction = 0;
@@ -100,6 +137,12 @@ struct ContactRule {
 struct PairRule {
   std::int32_t a = -1, b = -1;
   ContactRule rule;
+};
+
+// A rigid half space that does not move: what lies on the other side of the plane than `normal` points to.
+struct Wall {
+  Vector3 point{}, normal{};  // normal: unit
+  ContactRule rule;           // its choice of normals is not used
 };
 
 struct Stop {
@@ -114,26 +157,29 @@ struct Model {
   std::vector<Clamp> clamps;
   std::vector<Material> materials;
   std::vector<Body> bodies;
-  ContactMethod contact_method = ContactMethod::HuangSecond;
   ContactRule contact;
-  std::vector<PairRule> pairs;
+  std::vector<PairRule> pairs;  // ordered, a < b
+  std::vector<Wall> walls;
   Stop stop;
 
-  // One velocity field where one body is present: the single-field method has one for all bodies, and so has a scene of
-  // one body.
-  int field_count() const {
-    return contact_method == ContactMethod::SingleField ? 1 : static_cast<int>(bodies.size());
-  }
-  int field_of(int body) const { return contact_method == ContactMethod::SingleField ? 0 : body; }
+  // Derived by complete(): bodies have velocity fields of their own. Not so where every pair is of the single-field method
+  // and no body is rigid.
+  bool own_fields = false;
+
+  int field_of(int body) const { return own_fields ? body : 0; }
+  bool rigid_field(int field) const { return own_fields && bodies[field].rigid(); }
   const Material& material_of(int body) const { return materials[bodies[body].material]; }
   const ContactRule& rule_of(int a, int b) const;
+  void set_pair(const PairRule& pair);  // in place of an older one of the same bodies
 
   // Each throws Error naming field, value and expectation.
   void validate_grid() const;
   void validate_numerics() const;
   void validate_clamp(const Clamp& clamp) const;
   void validate_contact(const ContactRule& rule, const char* where) const;
-  void validate_all() const;  // what needs the whole model
+  void validate_wall(const Wall& wall) const;
+  void validate_motion(const std::vector<MotionKnot>& motion) const;
+  void complete();  // checks what needs the whole model and fills the derived values
 
   void exchange(Archive& archive);  // saves or loads every field
 };

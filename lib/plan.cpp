@@ -4,6 +4,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "contact/method.hpp"
+#include "contact/normal.hpp"
 #include "time_step.hpp"
 
 namespace ogive {
@@ -22,11 +24,22 @@ void line(std::string& text, const char* format, ...) {
 
 void describe_body(std::string& text, const Model& model, const State& state, int b) {
   const Material& m = model.material_of(b);
+  const Body& rules = model.bodies[b];
   static const char* const strengths[] = {"linear elastic", "compressible neo-Hookean", "von Mises with A + B eps^n",
                                           "Johnson-Cook"};
   double mass = 0;
   const BodyState& body = state.bodies[b];
   for (std::int64_t p = 0; p < body.padded; ++p) mass += body.position[4 * p + 3];
+  if (rules.rigid()) {
+    line(text, "body \"%s\": %lld particles, mass %.6g, rigid: %s", rules.name.c_str(),
+         static_cast<long long>(body.particles), mass,
+         !rules.prescribed() ? "moves freely, inertia from its particles"
+                             : rules.motion.size() > 1 ? "moves as a table in time says" : "moves with constant velocity");
+    const int cuts = rules.cut[0] + rules.cut[1] + rules.cut[2];
+    if (cuts > 0) line(text, "  cut by %d symmetry face%s: moves as the whole body does", cuts, cuts > 1 ? "s" : "");
+    line(text, "  left out: strain and stress (it is rigid), its nodes where no other body is near");
+    return;
+  }
   line(text, "body \"%s\": %lld particles, mass %.6g, material \"%s\": %s, %s pressure", model.bodies[b].name.c_str(),
        static_cast<long long>(body.particles), mass, m.name.c_str(), strengths[static_cast<int>(m.strength)],
        m.eos == EquationOfState::MieGruneisen ? "Mie-Grueneisen" : "linear");
@@ -44,42 +57,70 @@ void describe_body(std::string& text, const Model& model, const State& state, in
   line(text, "  left out: %s", omitted.empty() ? "nothing" : omitted.c_str());
 }
 
+void describe_rule(std::string& text, const ContactRule& rule, const std::string& what, bool wall) {
+  const ContactMethodDef& method = contact_method(rule.method);
+  std::string details;
+  if (method.needs_normal) {
+    if (!wall) details += std::string("; normals: ") + normal_rule(rule.normal).name;
+    details += rule.detection == Detection::Gap ? "; where the gap is closed" : "; at shared nodes";
+    char offset[48];
+    std::snprintf(offset, sizeof offset, " (offset %.3g cells)", rule.gap_offset);
+    if (rule.detection == Detection::Gap) details += offset;
+  }
+  if (method.has_friction && rule.friction > 0) {
+    char friction[48];
+    std::snprintf(friction, sizeof friction, "; friction %.3g", rule.friction);
+    details += friction;
+  }
+  if (method.has_friction && rule.friction == 0) details += "; friction left out (coefficient 0)";
+  line(text, "%s: %s, %s%s", what.c_str(), method.name, method.summary, details.c_str());
+  if (!method.has_friction && rule.friction > 0)
+    line(text, "  caution: this method has no friction; the coefficient %.3g is not used", rule.friction);
+}
+
+void describe_contact(std::string& text, const Model& model, const Workspace& workspace) {
+  if (model.bodies.size() == 1) {
+    line(text, "contact: left out between bodies, there is one");
+  } else {
+    describe_rule(text, model.contact, "contact", false);
+    for (const PairRule& pair : model.pairs)
+      describe_rule(text, pair.rule,
+                    "  of \"" + model.bodies[pair.a].name + "\" and \"" + model.bodies[pair.b].name + '"', false);
+    if (!model.own_fields) line(text, "  one velocity field for all bodies");
+  }
+  for (std::size_t w = 0; w < model.walls.size(); ++w)
+    describe_rule(text, model.walls[w].rule, "wall " + std::to_string(w), true);
+  if (workspace.contact_needs.any)
+    line(text, "  velocity fields of their own only in blocks that several bodies reach or a wall is near: %zu now",
+         workspace.mixed.size());
+}
+
 }  // namespace
 
 std::string describe_plan(const Model& model, const State& state, const Workspace& workspace) {
   std::string text;
   static const char* const faces[] = {"free", "symmetry", "fixed"};
-  static const char* const methods[] = {"single field (standard MPM)", "Huang first method", "Huang second method"};
   line(text, "grid: cells of %.6g, %s shape functions, %zu blocks of 64 nodes where material is",
        model.grid.cell_size,
        model.numerics.shape_function == ShapeFunction::Linear ? "trilinear" : "quadratic B-spline",
        workspace.slots.size());
-  static const char* const transfers[] = {"FLIP", "FLIP with affine velocity", "APIC"};
+  static const char* const transfers[] = {"FLIP", "FLIP with affine velocity", "APIC", "XPIC"};
+  static const char* const orders[] = {"first (USF)", "last (MUSL)", "last, from the velocities as they are (USL)"};
   const Numerics& numerics = model.numerics;
   std::string blend;
-  if (numerics.transfer != Transfer::Apic && numerics.pic_fraction > 0)
+  if (numerics.transfer == Transfer::Xpic)
+    blend = " of order " + std::to_string(numerics.xpic_order) +
+            (numerics.xpic_order == 1 ? " (PIC)" : ", " + std::to_string(numerics.xpic_order - 1) + " more passes a step");
+  else if (numerics.transfer != Transfer::Apic && numerics.pic_fraction > 0)
     blend = " with " + std::to_string(100 * numerics.pic_fraction) + " % of the grid's velocity a step";
   line(text, "velocity transfer: %s%s; stress %s", transfers[static_cast<int>(numerics.transfer)], blend.c_str(),
-       numerics.update_order == UpdateOrder::StressFirst ? "first (USF)" : "last (MUSL)");
+       orders[static_cast<int>(numerics.update_order)]);
   line(text, "faces: x %s..%s, y %s..%s, z %s..%s", faces[static_cast<int>(model.grid.face[0])],
        faces[static_cast<int>(model.grid.face[1])], faces[static_cast<int>(model.grid.face[2])],
        faces[static_cast<int>(model.grid.face[3])], faces[static_cast<int>(model.grid.face[4])],
        faces[static_cast<int>(model.grid.face[5])]);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) describe_body(text, model, state, b);
-  if (model.bodies.size() == 1) {
-    line(text, "contact: left out, there is one body");
-  } else {
-    const bool second_fields = model.contact_method != ContactMethod::SingleField;
-    line(text, "contact: %s%s", methods[static_cast<int>(model.contact_method)],
-         second_fields ? "; velocity fields of their own only in blocks that several bodies reach" : "");
-    if (second_fields) {
-      bool friction = model.contact.friction > 0;
-      for (const PairRule& pair : model.pairs) friction = friction || pair.rule.friction > 0;
-      line(text, "  %zu such blocks now; detection by %s; friction %s", workspace.mixed.size(),
-           model.contact.detection == Detection::Gap ? "shared node and closed gap" : "shared node",
-           friction ? "Coulomb" : "left out (coefficients are 0)");
-    }
-  }
+  describe_contact(text, model, workspace);
   const Vector3& g = model.numerics.gravity;
   line(text, "gravity: %s", g[0] == 0 && g[1] == 0 && g[2] == 0 ? "left out (it is 0)" : "on all bodies");
   line(text, "time step: %.6g at first (factor %.3g)", state.stable_time_step, model.numerics.time_step_factor);

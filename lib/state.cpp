@@ -28,14 +28,16 @@ std::int64_t State::memory_bytes() const {
   return total;
 }
 
-void allocate_particles(const Material& material, std::int64_t padded, BodyState& body) {
+void allocate_particles(const Material& material, bool rigid, std::int64_t padded, BodyState& body) {
   const std::size_t n = static_cast<std::size_t>(padded);
   body.padded = padded;
   body.position.assign(4 * n, 0.0);
   body.velocity.assign(4 * n, 0.0);
-  for (auto& c : body.stress) c.assign(n, 0.0);
   body.volume_ratio.assign(n, 1.0);
   body.energy.assign(n, 0.0);
+  body.number.assign(n, -1);
+  if (rigid) return;
+  for (auto& c : body.stress) c.assign(n, 0.0);
   if (material.plastic()) {
     body.plastic_strain.assign(n, 0.0);
     body.yield_stress.assign(n, material.yield_stress);
@@ -43,10 +45,11 @@ void allocate_particles(const Material& material, std::int64_t padded, BodyState
   if (material.thermal()) body.temperature.assign(n, material.room_temperature);
   if (material.hyperelastic())
     for (int c = 0; c < 9; ++c) body.deformation[c].assign(n, c % 4 == 0 ? 1.0 : 0.0);
-  body.number.assign(n, -1);
 }
 
-void allocate_transfer(const Model& model, const Material& material, BodyState& body) {
+void allocate_transfer(const Model& model, int index, BodyState& body) {
+  if (model.bodies[index].rigid()) return;
+  const Material& material = model.material_of(index);
   const std::size_t n = static_cast<std::size_t>(body.padded);
   if (model.numerics.affine() && body.affine.empty()) {
     body.affine.assign(affine_size * n, 0.0);
@@ -54,7 +57,7 @@ void allocate_transfer(const Model& model, const Material& material, BodyState& 
     const double field[affine_size] = {0, w[2], -w[1], -w[2], 0, w[0], w[1], -w[0], 0};
     for (std::size_t i = 0; i < body.affine.size(); ++i) body.affine[i] = field[i % affine_size];
   }
-  if (model.numerics.update_order == UpdateOrder::StressLast && material.viscous() && body.viscous_pressure.empty())
+  if (!model.numerics.stress_first() && material.viscous() && body.viscous_pressure.empty())
     body.viscous_pressure.assign(n, 0.0);
 }
 
@@ -74,12 +77,31 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/ledger/contact_work", ledger.contact_work);
   a.value("state/ledger/boundary_work", ledger.boundary_work);
   a.value("state/ledger/external_work", ledger.external_work);
+  a.value("state/ledger/prescribed_work", ledger.prescribed_work);
   a.value("state/ledger/boundary_impulse", ledger.boundary_impulse);
   a.value("state/ledger/external_impulse", ledger.external_impulse);
+  a.value("state/ledger/contact_couple", ledger.contact_couple);
   a.value("state/ledger/initial_total", ledger.initial_total);
+
+  // Five whole numbers each.
+  std::vector<std::int64_t> memory;
+  for (const PressedPair& pair : contact_memory)
+    memory.insert(memory.end(), {pair.node[0], pair.node[1], pair.node[2], pair.a, pair.b});
+  a.resizable("state/contact_memory", memory, std::int64_t{5} << 30);
+  if (a.loading()) {
+    if (memory.size() % 5 != 0)
+      throw Error(ErrorKind::Format, "state/contact_memory: expected a multiple of 5 numbers, found " +
+                                         std::to_string(memory.size()));
+    for (std::size_t i = 0; i < memory.size(); i += 5) {
+      const auto part = [&](std::size_t k) { return static_cast<std::int32_t>(memory[i + k]); };
+      contact_memory.push_back({{part(0), part(1), part(2)}, part(3), part(4)});
+    }
+    order_memory(contact_memory);
+  }
 
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     BodyState& body = bodies[b];
+    const bool rigid = model.bodies[b].rigid();
     const Material& material = model.material_of(static_cast<int>(b));
     const std::string at = "state/bodies/" + std::to_string(b) + "/";
     BodyTotals& t = body.totals;
@@ -98,6 +120,11 @@ void State::exchange(const Model& model, Archive& a) {
     a.value(at + "maximum_speed", t.maximum_speed);
     a.value(at + "maximum_speed_ever", t.maximum_speed_ever);
     a.value(at + "drifted", body.drifted);
+    if (rigid) {
+      a.value(at + "rigid/centre", body.rigid.centre);
+      a.value(at + "rigid/velocity", body.rigid.velocity);
+      a.value(at + "rigid/spin", body.rigid.spin);
+    }
 
     // Groups: eleven whole numbers each.
     std::vector<std::int64_t> groups;
@@ -134,18 +161,18 @@ void State::exchange(const Model& model, Archive& a) {
     a.sized(at + "position", body.position, 4 * n);
     a.sized(at + "velocity", body.velocity, 4 * n);
     static const char* const component[] = {"xx", "yy", "zz", "yz", "xz", "xy"};
-    for (int c = 0; c < 6; ++c) a.sized(at + "stress_" + component[c], body.stress[c], n);
     a.sized(at + "volume_ratio", body.volume_ratio, n);
     a.sized(at + "energy", body.energy, n);
-    if (material.plastic()) {
+    for (int c = 0; c < 6 && !rigid; ++c) a.sized(at + "stress_" + component[c], body.stress[c], n);
+    if (!rigid && material.plastic()) {
       a.sized(at + "plastic_strain", body.plastic_strain, n);
       a.sized(at + "yield_stress", body.yield_stress, n);
     }
-    if (material.thermal()) a.sized(at + "temperature", body.temperature, n);
-    if (material.hyperelastic())
+    if (!rigid && material.thermal()) a.sized(at + "temperature", body.temperature, n);
+    if (!rigid && material.hyperelastic())
       for (int c = 0; c < 9; ++c) a.sized(at + "deformation_" + std::to_string(c), body.deformation[c], n);
-    if (model.numerics.affine()) a.sized(at + "affine", body.affine, affine_size * n);
-    if (model.numerics.update_order == UpdateOrder::StressLast && material.viscous())
+    if (!rigid && model.numerics.affine()) a.sized(at + "affine", body.affine, affine_size * n);
+    if (!rigid && !model.numerics.stress_first() && material.viscous())
       a.sized(at + "viscous_pressure", body.viscous_pressure, n);
     a.sized(at + "number", body.number, n);
     if (a.loading()) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "contact/memory.hpp"
 #include "model.hpp"
 #include "transfer/kernels.hpp"
 
@@ -46,6 +47,11 @@ struct BodyTotals {
   double maximum_speed = 0, maximum_speed_ever = 0;
 };
 
+// Of a rigid body: its centre of mass (prescribed motion: its reference point), that point's velocity, angular velocity.
+struct RigidState {
+  Vector3 centre{}, velocity{}, spin{};
+};
+
 // Particle arrays are `padded` long; those that the material does not need are empty.
 struct BodyState {
   std::int64_t particles = 0;  // real ones
@@ -66,11 +72,13 @@ struct BodyState {
   Vector3 initial_spin{};                            // angular velocity given with the body; the start of `affine`
   bool drifted = false;                              // some particle has left its group's bounds: bin before the next step
   BodyTotals totals;
+  RigidState rigid;                                  // rigid bodies only
 
   // Calls f(array) for each per-particle array of doubles with one value a particle that is in use.
   template <class F>
   void for_each_scalar(F&& f) {
-    for (auto& component : stress) f(component);
+    if (!stress[0].empty())
+      for (auto& component : stress) f(component);
     f(volume_ratio);
     f(energy);
     if (!plastic_strain.empty()) f(plastic_strain);
@@ -84,8 +92,9 @@ struct BodyState {
 
 // Momentum and energy that no particle carries; see ogive_ledger.
 struct Ledger {
-  double friction_dissipation = 0, transfer_dissipation = 0, contact_work = 0, boundary_work = 0, external_work = 0;
-  Vector3 boundary_impulse{}, external_impulse{};
+  double friction_dissipation = 0, transfer_dissipation = 0, contact_work = 0, boundary_work = 0, external_work = 0,
+         prescribed_work = 0;
+  Vector3 boundary_impulse{}, external_impulse{}, contact_couple{};
   double initial_total = 0;
 };
 
@@ -102,15 +111,16 @@ struct State {
   std::vector<BodyState> bodies;
   Ledger ledger;
   StopState stop;
+  ContactMemory contact_memory;  // where a contact method has one
 
   std::int64_t particle_count() const;
   std::int64_t memory_bytes() const;
   void exchange(const Model& model, Archive& archive);
 };
 
-// Gives a body the arrays that its material needs, `padded` long.
-void allocate_particles(const Material& material, std::int64_t padded, BodyState& body);
+// Gives a body the arrays that its material needs, `padded` long; a rigid one has no stress.
+void allocate_particles(const Material& material, bool rigid, std::int64_t padded, BodyState& body);
 // Gives it those that the numerics need, where it has none yet.
-void allocate_transfer(const Model& model, const Material& material, BodyState& body);
+void allocate_transfer(const Model& model, int index, BodyState& body);
 
 }  // namespace ogive

@@ -1,8 +1,10 @@
 // One step of the material point method. Equation numbers are those of Huang et al. 2010. Stress first is USF
 // (Bardenhagen 2002), the papers' order; stress last is MUSL (Sulsky, Zhou, Schreyer 1995): the particles' new momentum
-// is mapped once more, from their old places, and gives the strain increment.
+// is mapped once more, from their old places, and gives the strain increment. Stress last as is, USL (Sulsky, Chen, Schreyer
+// 1994), takes the nodal velocities at the end of the step as they are.
 #include "step.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -10,7 +12,9 @@
 
 #include "boundary/boundary.hpp"
 #include "contact/contact.hpp"
+#include "contact/occupied.hpp"
 #include "error.hpp"
+#include "rigid/rigid.hpp"
 #include "simd/subnormals.hpp"
 #include "time_step.hpp"
 
@@ -21,6 +25,9 @@ void clear_grid(Workspace& workspace);
 void clear_contacts(Workspace& workspace);
 void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace);
 void map_contact_sums(const Model& model, State& state, Workspace& workspace);
+void map_contact_stress(const Model& model, State& state, Workspace& workspace);
+void filter_velocities(const Model& model, State& state, Workspace& workspace);
+void filtered_velocities(Workspace& workspace);
 void nodal_velocities(Workspace& workspace);
 void update_stress(const Model& model, State& state, Workspace& workspace, double dt);
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
@@ -31,9 +38,9 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
 }  // namespace
 
 void advance_one_step(const Model& model, State& state, Workspace& workspace, double dt) {
-  const bool contact = model.contact_method != ContactMethod::SingleField;
-  const bool second_method = model.contact_method == ContactMethod::HuangSecond;
-  const bool stress_first = model.numerics.update_order == UpdateOrder::StressFirst;
+  const bool contact = workspace.contact_needs.any;
+  const bool stress_first = model.numerics.stress_first();
+  const bool xpic = model.numerics.transfer == Transfer::Xpic;
   bin_particles(model, state, workspace, false);                 // particles that left their cells; the domain
   if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
 
@@ -44,8 +51,13 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   fold_momentum(workspace);                                      // symmetry and fixed faces
   fold_contact_sums(workspace);
   nodal_velocities(workspace);                                   // (6)
+  begin_rigid_step(model, state, workspace, dt);
+  set_rigid_velocities(model, workspace, false);
+  if (xpic) filter_velocities(model, state, workspace);          // v* of XPIC
+  if (contact) find_contacts(model, state, workspace);           // (10), the gap
+  if (contact) start_contact(state, workspace, dt,               // (23)-(25)
+                             stress_first ? StartUse::MotionAndStrain : StartUse::Motion);
   if (stress_first) {
-    if (second_method) remove_approach(model, state, workspace); // (23)-(25)
     unfold_velocity(workspace);
     update_stress(model, state, workspace, dt);                  // (29), (30), stress, (31)
   } else {
@@ -53,23 +65,30 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   }
   fold_force(state, workspace, dt);
   trial_velocities(model, state, workspace, dt);                 // (32), (11) or (26)
-  if (stress_first && second_method) restore_approach(workspace); // the jump of (25) belongs to the increment (34)
+  accelerate_rigid(model, state, workspace, dt);
+  set_rigid_velocities(model, workspace, true);
+  if (contact) return_start(workspace);                          // the jump of (25) belongs to the increment (34)
   hold_faces(state, workspace);
-  if (contact) apply_contact_force(model, state, workspace, dt); // (12)-(22), (14)
+  map_contact_stress(model, state, workspace);
+  if (contact) end_contact(model, state, workspace, dt);         // (12)-(22), (14)
   apply_clamps(state, workspace);
   unfold_motion(state, workspace);
+  if (contact) book_kept_start(state, workspace);
+  if (xpic) filtered_velocities(workspace);
   accelerations(state, workspace, dt);
   update_velocity_and_position(model, state, workspace, dt);     // (34), (33)
 
-  if (!stress_first) {
+  if (model.numerics.update_order == UpdateOrder::StressLast) {
     clear_grid(workspace);
     map_mass_and_momentum(model, state, workspace);              // (28) of the new velocities from the old places
     fold_momentum(workspace);
     nodal_velocities(workspace);
-    if (second_method) remove_approach(model, state, workspace); // (23)-(25), for the strain alone
+    set_rigid_velocities(model, workspace, false);
+    if (contact) start_contact(state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
     unfold_velocity(workspace);
-    update_stress(model, state, workspace, dt);                  // (29), (30), stress; moves the particles (33)
   }
+  if (!stress_first) update_stress(model, state, workspace, dt); // (29), (30), stress; moves the particles (33)
+  finish_rigid_step(model, state, workspace, dt);
 
   state.time += dt;
   state.last_time_step = dt;
@@ -123,11 +142,14 @@ void clear_grid(Workspace& workspace) {
 void clear_contacts(Workspace& workspace) {
   if (!workspace.contacts.empty())
     std::memset(static_cast<void*>(workspace.contacts.data()), 0, workspace.contacts.size() * sizeof(ContactRecord));
+  std::fill(workspace.occupied.begin(), workspace.occupied.end(), std::uint8_t{0});
 }
 
 void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace) {
-  const auto map = workspace.kernels->map_momentum[static_cast<int>(model.numerics.shape_function)][model.numerics.affine()];
+  const auto& maps = workspace.kernels->map_momentum[static_cast<int>(model.numerics.shape_function)];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+    if (link.rigid && !link.contact) return;  // only contact asks for a rigid body's nodes
+    const auto map = maps[model.numerics.affine() && !link.rigid];
     map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link));
   });
 }
@@ -137,7 +159,82 @@ void map_contact_sums(const Model& model, State& state, Workspace& workspace) {
   const auto map = workspace.kernels->map_contact[static_cast<int>(model.numerics.shape_function)];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
     if (link.contact) map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link));
+    if (link.contact && workspace.contact_needs.occupied) mark_occupied(model, state, workspace, link);
   });
+  if (workspace.contact_needs.occupied) fold_occupied(workspace);
+}
+
+// For methods that look at the normal traction.
+void map_contact_stress(const Model& model, State& state, Workspace& workspace) {
+  if (workspace.contact_stress.empty()) return;
+  std::memset(static_cast<void*>(workspace.contact_stress.data()), 0,
+              workspace.contact_stress.size() * sizeof(ContactStress));
+  const auto map = workspace.kernels->map_contact_stress[static_cast<int>(model.numerics.shape_function)];
+  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+    if (!link.contact || link.rigid) return;
+    ContactStress* nodes[27];
+    for (int i = 0; i < 27; ++i) {
+      const std::int32_t contact = link.slot[i] < 0 ? -1 : workspace.slots[link.slot[i]].contact;
+      nodes[i] = contact < 0 ? nullptr : &workspace.contact_stress[static_cast<std::size_t>(contact) * block_nodes];
+    }
+    map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link), nodes);
+  });
+  fold_contact_stress(workspace);
+}
+
+std::array<NodeRecord*, 27> filter_of(Workspace& workspace, const GroupLinks& link) {
+  std::array<NodeRecord*, 27> nodes;
+  for (int i = 0; i < 27; ++i)
+    nodes[i] = link.slot[i] < 0 ? nullptr : &workspace.filter[static_cast<std::size_t>(link.slot[i]) * block_nodes];
+  return nodes;
+}
+
+// XPIC(k), see transfer/xpic.hpp. With Q the pass to the particles and back to the grid, v_r = Q^(r-1) v_1 and
+// v* = sum_r (-1)^(r+1) C(k, r) Q^(r-1) v_1 = sum_{j=0..k-1} (1 - Q)^j v_1, so that k - 1 times v* <- v_1 + (1 - Q) v*.
+void filter_velocities(const Model& model, State& state, Workspace& workspace) {
+  const std::int64_t count = static_cast<std::int64_t>(workspace.nodes.size());
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+  for (std::int64_t i = 0; i < count; ++i) {
+    for (int c = 0; c < 4; ++c) workspace.filter[i].f[c] = 0;
+    for (int c = 0; c < 3; ++c) workspace.filter[i].v[c] = workspace.nodes[i].v[3] > 0 ? workspace.nodes[i].v[c] : 0;
+    workspace.filter[i].v[3] = 0;
+  }
+  unfold_filter(workspace);
+  const auto pass = workspace.kernels->filter_velocity[static_cast<int>(model.numerics.shape_function)];
+  for (int r = 1; r < model.numerics.xpic_order; ++r) {
+    for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+      if (link.rigid) return;
+      const auto filter = filter_of(workspace, link);
+      NodeRecord* nodes[27];
+      std::copy(filter.begin(), filter.end(), nodes);
+      pass(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link), nodes);
+    });
+    fold_filter(workspace);
+#pragma omp parallel for num_threads(workspace.threads) schedule(static)
+    for (std::int64_t i = 0; i < count; ++i) {
+      NodeRecord& filter = workspace.filter[i];
+      const NodeRecord& node = workspace.nodes[i];
+      for (int c = 0; c < 3; ++c) {
+        if (node.v[3] > 0) filter.v[c] += node.v[c] - filter.f[c] / node.v[3];
+        filter.f[c] = 0;
+      }
+    }
+    unfold_filter(workspace);
+  }
+}
+
+// The particles of XPIC are to have S (v* + end - mapped), whatever the first phase of contact kept from others.
+void filtered_velocities(Workspace& workspace) {
+  if (!workspace.contact_needs.start_kept) return;
+  for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
+    for (const ContactNode& node : workspace.block_contacts[i].nodes)
+      for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
+        const ContactField& field = workspace.block_contacts[i].fields[f];
+        if (field.slot < 0) continue;
+        double* star = workspace.filter[static_cast<std::size_t>(field.slot) * block_nodes + node.node].v;
+        for (int c = 0; c < 3; ++c) star[c] -= field.kept[c];
+      }
+  unfold_filter(workspace);
 }
 
 // Momentum to velocity. There is no mass cut-off: a node with ever so little mass has a force in proportion, and dropping
@@ -153,6 +250,7 @@ void nodal_velocities(Workspace& workspace) {
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt) {
   const auto map = workspace.kernels->map_internal_force[static_cast<int>(model.numerics.shape_function)];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+    if (link.rigid) return;
     map(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link));
   });
 }
@@ -160,12 +258,14 @@ void map_internal_force(const Model& model, State& state, Workspace& workspace, 
 void update_stress(const Model& model, State& state, Workspace& workspace, double dt) {
   const int shape = static_cast<int>(model.numerics.shape_function);
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
+    if (link.rigid) return;
     const Material& material = model.material_of(link.body);
     workspace.kernels->update_stress[shape][static_cast<int>(material.strength)][static_cast<int>(material.eos)](
         kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
         workspace.materials[link.body], workspace.stress_sums[index]);
   });
   for (std::size_t l = 0; l < workspace.links.size(); ++l) {
+    if (workspace.links[l].rigid) continue;
     const StressSums& sums = workspace.stress_sums[l];
     const int b = workspace.links[l].body;
     state.bodies[b].drifted = state.bodies[b].drifted || sums.outside;
@@ -201,12 +301,17 @@ void trial_velocities(const Model& model, State& state, Workspace& workspace, do
     const double factor = dt / node.v[3];
     for (int c = 0; c < 3; ++c) node.f[c] = node.v[c] + node.f[c] * factor + g[c] * dt;
   });
-  if (heavy)
-    for (const NodeRecord& node : workspace.nodes)
+  if (!heavy) return;
+  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+    if (workspace.slots[s].rigid >= 0) continue;
+    for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {
+      const NodeRecord& node = workspace.nodes[i];
       for (int c = 0; c < 3; ++c) {
         state.ledger.external_impulse[c] += node.v[3] * g[c] * dt;
         state.ledger.external_work += 0.5 * node.v[3] * g[c] * dt * (node.v[c] + node.f[c]);
       }
+    }
+  }
 }
 
 // From {velocity at the beginning, mass | velocity at the end} to {velocity at the end, 0 | acceleration, 0}, which is what
@@ -225,6 +330,8 @@ void accelerations(State& state, Workspace& workspace, double dt) {
 #pragma omp for schedule(static)
     for (std::int64_t s = 0; s < slots; ++s) {
       double given = 0;
+      workspace.slot_given[s] = 0;
+      if (workspace.slots[s].rigid >= 0) continue;
       for (std::int64_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {
         NodeRecord& node = workspace.nodes[i];
         for (int c = 0; c < 3; ++c) {
@@ -242,8 +349,10 @@ void accelerations(State& state, Workspace& workspace, double dt) {
 }
 
 void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt) {
-  const auto update =
-      workspace.kernels->update_particles[static_cast<int>(model.numerics.shape_function)][model.numerics.affine()];
+  const int shape = static_cast<int>(model.numerics.shape_function);
+  const bool xpic = model.numerics.transfer == Transfer::Xpic;
+  const auto update = workspace.kernels->update_particles[shape][model.numerics.affine()];
+  const auto update_xpic = workspace.kernels->update_particles_xpic[shape];
   const std::int32_t count = static_cast<std::int32_t>(workspace.pencils.size());
 #pragma omp parallel num_threads(workspace.threads) if (count > 1)
   {
@@ -252,6 +361,16 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
     for (std::int32_t p = 0; p < count; ++p)
       for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
         const GroupLinks& link = workspace.links[l];
+        workspace.move_sums[l] = {};
+        if (link.rigid) continue;
+        if (xpic) {
+          const auto filter = filter_of(workspace, link);
+          NodeRecord* nodes[27];
+          std::copy(filter.begin(), filter.end(), nodes);
+          update_xpic(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), nodes,
+                      workspace.move_sums[l]);
+          continue;
+        }
         update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
                workspace.move_sums[l]);
       }
@@ -276,10 +395,14 @@ void prepare_state(const Model& model, State& state, Workspace& workspace) {
   for (const Body& body : model.bodies)
     workspace.materials.push_back(kernel_material(model.materials[body.material], model.grid.cell_size));
   for (std::size_t b = 0; b < state.bodies.size(); ++b)
-    allocate_transfer(model, model.materials[model.bodies[b].material], state.bodies[b]);
+    allocate_transfer(model, static_cast<int>(b), state.bodies[b]);
+  workspace.contact_needs = contact_needs(model);
   bool fresh = false;
   for (const BodyState& body : state.bodies) fresh = fresh || (body.groups.empty() && body.particles > 0);
-  if (fresh) bin_particles(model, state, workspace, true);
+  if (fresh) {
+    prepare_rigid(model, state);
+    bin_particles(model, state, workspace, true);
+  }
   link_grid(model, state, workspace);
   if (state.stable_time_step == 0) state.stable_time_step = initial_time_step(model, state, workspace);
 }

@@ -24,8 +24,9 @@ double limit(const Model& model, const State& state, double fastest) {
 }  // namespace
 
 double stable_time_step(const Model& model, const State& state, const Workspace& workspace) {
-  double fastest = 0;
-  for (const StressSums& sums : workspace.stress_sums) fastest = std::max(fastest, sums.fastest);
+  double fastest = workspace.rigid_speed;
+  for (std::size_t l = 0; l < workspace.links.size(); ++l)
+    if (!workspace.links[l].rigid) fastest = std::max(fastest, workspace.stress_sums[l].fastest);
   if (workspace.links.empty()) return state.stable_time_step;  // nothing is left to be fast
   return limit(model, state, fastest);
 }
@@ -37,7 +38,7 @@ double initial_time_step(const Model& model, State& state, const Workspace& work
     const KernelMaterial& material = workspace.materials[b];
     const Material& rules = model.material_of(static_cast<int>(b));
     const double bulk = rules.eos == EquationOfState::MieGruneisen ? material.rho_c0_squared : material.K;
-    double wave = std::sqrt((bulk + 4.0 / 3.0 * material.G) / material.density);
+    double wave = model.bodies[b].rigid() ? 0 : std::sqrt((bulk + 4.0 / 3.0 * material.G) / material.density);
     wave += 2.0 * material.viscosity_linear * wave;  // bulk viscosity slows the step once something is compressed
     double speed_squared = 0;
     for (const Group& group : body.groups)

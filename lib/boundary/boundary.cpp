@@ -1,6 +1,8 @@
 // Mirror faces and clamps.
 #include "boundary/boundary.hpp"
 
+#include "contact/occupied.hpp"
+
 namespace ogive {
 namespace {
 
@@ -50,17 +52,91 @@ void fold_contact_sums(Workspace& workspace) {
   }
 }
 
+void fold_contact_stress(Workspace& workspace) {
+  const auto record = [&](std::int64_t node) -> ContactStress* {
+    const std::int32_t contact = workspace.slots[node / block_nodes].contact;
+    return contact < 0 ? nullptr : &workspace.contact_stress[contact * block_nodes + node % block_nodes];
+  };
+  for (const FaceNodes& face : workspace.faces) {
+    // Shear component c is that of the two axes other than c: it changes its sign unless c is the face's own axis.
+    for (std::size_t i = 0; i < face.moving_pairs; ++i) {
+      ContactStress *source = record(face.pairs[i].ghost), *target = record(face.pairs[i].image);
+      if (!source || !target) continue;
+      for (int c = 0; c < 3; ++c) {
+        target->direct[c] += source->direct[c];
+        target->shear[c] += (c == face.axis ? 1.0 : -1.0) * source->shear[c];
+      }
+      target->volume += source->volume;
+      *source = {};
+    }
+    for (std::size_t i = 0; i < face.moving_plane; ++i) {
+      ContactStress* sums = record(face.plane[i]);
+      if (!sums) continue;
+      for (int c = 0; c < 3; ++c) {
+        sums->direct[c] *= 2;
+        sums->shear[c] *= c == face.axis ? 2.0 : 0.0;
+      }
+      sums->volume *= 2;
+    }
+  }
+}
+
+void fold_occupied(Workspace& workspace) {
+  const auto mask = [&](std::int64_t node) -> std::uint8_t* {
+    const std::int32_t contact = workspace.slots[node / block_nodes].contact;
+    return contact < 0 ? nullptr : &workspace.occupied[contact * block_nodes + node % block_nodes];
+  };
+  for (const FaceNodes& face : workspace.faces) {
+    for (const MirrorPair& pair : face.pairs) {
+      std::uint8_t *source = mask(pair.ghost), *target = mask(pair.image);
+      if (!source || !target) continue;
+      *target = static_cast<std::uint8_t>(*target | mirrored_cells(*source, face.axis));
+      *source = 0;
+    }
+    for (const std::int64_t node : face.plane)
+      if (std::uint8_t* cells = mask(node))
+        *cells = static_cast<std::uint8_t>(*cells | mirrored_cells(*cells, face.axis));
+  }
+}
+
 void unfold_velocity(Workspace& workspace) {
   for (auto face = workspace.faces.rbegin(); face != workspace.faces.rend(); ++face)
-    for (const MirrorPair& pair : face->pairs)
+    for (std::size_t i = 0; i < face->moving_pairs; ++i) {
+      const MirrorPair& pair = face->pairs[i];
       for (int c = 0; c < 3; ++c)
         workspace.nodes[pair.ghost].v[c] = mirror_sign(*face, c) * workspace.nodes[pair.image].v[c];
+    }
+}
+
+void fold_filter(Workspace& workspace) {
+  for (const FaceNodes& face : workspace.faces) {
+    for (std::size_t i = 0; i < face.moving_pairs; ++i) {
+      NodeRecord &ghost = workspace.filter[face.pairs[i].ghost], &image = workspace.filter[face.pairs[i].image];
+      for (int c = 0; c < 3; ++c) {
+        image.f[c] += mirror_sign(face, c) * ghost.f[c];
+        ghost.f[c] = 0;
+      }
+    }
+    for (std::size_t i = 0; i < face.moving_plane; ++i)
+      for (int c = 0; c < 3; ++c)
+        if (mirror_sign(face, c) < 0) workspace.filter[face.plane[i]].f[c] = 0;
+  }
+}
+
+void unfold_filter(Workspace& workspace) {
+  for (auto face = workspace.faces.rbegin(); face != workspace.faces.rend(); ++face)
+    for (std::size_t i = 0; i < face->moving_pairs; ++i) {
+      const MirrorPair& pair = face->pairs[i];
+      for (int c = 0; c < 3; ++c)
+        workspace.filter[pair.ghost].v[c] = mirror_sign(*face, c) * workspace.filter[pair.image].v[c];
+    }
 }
 
 void fold_force(State& state, Workspace& workspace, double dt) {
   for (const FaceNodes& face : workspace.faces) {
     Vector3& impulse = state.ledger.boundary_impulse;
-    for (const MirrorPair& pair : face.pairs) {
+    for (std::size_t i = 0; i < face.moving_pairs; ++i) {
+      const MirrorPair& pair = face.pairs[i];
       NodeRecord &ghost = workspace.nodes[pair.ghost], &image = workspace.nodes[pair.image];
       for (int c = 0; c < 3; ++c) {
         const double sign = mirror_sign(face, c);
@@ -70,19 +146,21 @@ void fold_force(State& state, Workspace& workspace, double dt) {
         ghost.f[c] = 0;
       }
     }
-    for (const std::int64_t node : face.plane)
+    for (std::size_t i = 0; i < face.moving_plane; ++i) {
+      NodeRecord& record = workspace.nodes[face.plane[i]];
       for (int c = 0; c < 3; ++c)
         if (mirror_sign(face, c) < 0) {
-          impulse[c] -= workspace.nodes[node].f[c] * dt;
-          workspace.nodes[node].f[c] = 0;
+          impulse[c] -= record.f[c] * dt;
+          record.f[c] = 0;
         }
+    }
   }
 }
 
 void hold_faces(State& state, Workspace& workspace) {
   for (const FaceNodes& face : workspace.faces)
-    for (const std::int64_t node : face.plane) {
-      NodeRecord& record = workspace.nodes[node];
+    for (std::size_t i = 0; i < face.moving_plane; ++i) {
+      NodeRecord& record = workspace.nodes[face.plane[i]];
       for (int c = 0; c < 3; ++c)
         if (mirror_sign(face, c) < 0) {
           state.ledger.boundary_impulse[c] -= record.v[3] * record.f[c];
@@ -93,7 +171,8 @@ void hold_faces(State& state, Workspace& workspace) {
 
 void unfold_motion(State& state, Workspace& workspace) {
   for (auto face = workspace.faces.rbegin(); face != workspace.faces.rend(); ++face)
-    for (const MirrorPair& pair : face->pairs) {
+    for (std::size_t i = 0; i < face->moving_pairs; ++i) {
+      const MirrorPair& pair = face->pairs[i];
       NodeRecord &ghost = workspace.nodes[pair.ghost], &image = workspace.nodes[pair.image];
       for (int c = 0; c < 3; ++c) {
         const double sign = mirror_sign(*face, c);

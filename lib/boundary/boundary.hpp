@@ -16,8 +16,13 @@ namespace ogive {
 // After mapping, node records hold {momentum, mass | -} and contact records their sums: folds ghosts into images.
 void fold_momentum(Workspace& workspace);
 void fold_contact_sums(Workspace& workspace);
+void fold_contact_stress(Workspace& workspace);
+void fold_occupied(Workspace& workspace);
 // Gives ghosts the velocity of their images (records hold velocities).
 void unfold_velocity(Workspace& workspace);
+// The same for the momentum (f) and velocity (v) of the XPIC filter.
+void fold_filter(Workspace& workspace);
+void unfold_filter(Workspace& workspace);
 // After the stress update: folds forces, and books the normal impulse of the faces before contact.
 void fold_force(State& state, Workspace& workspace, double dt);
 // Trial velocities on the faces have no held components (gravity would give them some).

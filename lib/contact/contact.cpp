@@ -1,198 +1,530 @@
 // Contact at shared nodes.
 //
-// Two bodies a, b with unit normal n out of a: they are in contact where both reach the node, the gap between their
-// surfaces is below the offset, and they approach, (v_a - v_b) . n > 0, which is Eqs. (8), (12) and (23) written for the
-// pair. The impulse m_a m_b / (m_a + m_b) (v_a - v_b) . n is Eq. (16), the friction Eq. (21) limited by Eq. (22).
+// A pair (a, b) with unit normal n out of a is looked at where both bodies reach the node and, with the gap rule, the gap
+// between their surfaces is below the offset. Its method says what holds it. With the reduced mass
+// m = m_a m_b / (m_a + m_b) and the relative velocity v = v_a - v_b the impulses are
+//   normal      I = m (v . n - target), pushing only where the pair is in contact, Eqs. (16), (22)
+//   tangential  m |v_t| against the slip v_t, at most mu I, Eqs. (21), (22).
 //
-// Three or more bodies: all pairs at once (Jacobi), each body's mass shared equally between its pairs, repeated until no
-// pair approaches. Impulses are equal and opposite, so momentum is kept to round-off; no order of bodies is preferred; and
-// sharing the mass keeps kinetic energy from growing. Two bodies need one pass, which is the papers' formula.
+// Several pairs: projected Jacobi iteration. In a sweep every pair asks for what is missing of its impulses, each body's
+// mass being shared equally between its pairs; impulses may also be taken back, down to zero. Impulses are equal and
+// opposite, so that momentum is kept to round-off; no order of bodies is preferred; and sharing the mass keeps kinetic
+// energy from growing. One pair needs one sweep, which is the papers' formula.
+//
+// Rigid bodies move with their surface, not with the node: the velocity of a pair is taken, and its impulse acts, where
+// the bodies' surfaces meet, beside the node along the normal. (Stick at nodes in several depths would forbid rotation.)
+// Two bodies that do not deform may approach until the gap is closed, v . n <= gap / dt: what lies before a rolling body
+// does not hold it up.
+//
+// Free rigid bodies couple the nodes that they touch. Their nodes are swept together, and after each sweep the body takes
+// all impulses as one rigid body. Its mass is shared between its nodes and pairs in proportion to their nodal mass (a
+// part theta each), so that a pair meets 1/theta times the inverse effective mass n . (1/M + [r] I^-1 [r]^T) . n.
 //
 // The gap. A body whose flat surface lies at distance s from a node fills a known part of that node's shape
 // function; inverting that gives s from the nodal volume, and the gap of a pair is s_a + s_b. It vanishes exactly when the
-// two bodies together fill the node (docs/theory.md).
+// two bodies together fill the node (docs/theory.md). A wall's s is its distance itself.
 #include "contact/contact.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "contact/memory.hpp"
+#include "contact/method.hpp"
+#include "contact/normal.hpp"
 
 namespace ogive {
 namespace {
 
 // A body with less than this share of a pair's nodal mass is not felt: its normal and velocity are round-off.
 constexpr double smallest_mass_share = 1e-6;
-// Passes for three and more bodies; the approach that is left falls by about a factor 2 to 4 a pass.
-constexpr int many_body_passes = 50;
-constexpr double many_body_tolerance = 1e-10;
+constexpr double least_steepness = 1e-9;  // of the mass gradient, times cell size over mass
+constexpr int most_sweeps = 50;           // of a node
+constexpr double sweep_tolerance = 1e-10;
+constexpr int most_coupled_sweeps = 300;  // of the nodes of free rigid bodies
+constexpr double coupled_tolerance = 1e-11;
 
-using Vec3 = Vector3;
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-bool make_unit(Vec3& a) {
-  const double length = std::sqrt(dot(a, a));
-  if (!(length > 0)) return false;
-  for (double& c : a) c /= length;
-  return true;
-}
+// ------------------------------------------------------------------------------------------------------------- finding
 
-struct FieldAtNode {
-  std::int32_t slot;  // within the mixed block
-  int body;
-  double mass, fill;
-  Vec3 outward;  // unit gradient, zero if there is none
-  Vec3 velocity, start;
-  int pairs;
-};
-
-struct PairAtNode {
-  int a, b;  // in the list of fields
-  Vec3 normal;
-  double friction;
-};
-
-// The fields present at one node of a mixed block, and its pairs in contact.
-class ContactNode {
+class Finder {
  public:
-  explicit ContactNode(const Model& model) : model_(model) {}
+  Finder(const Model& model, const State& state, const Workspace& workspace)
+      : model_(model), state_(state), workspace_(workspace) {}
 
-  // False if there is no pair to look at.
-  bool collect(const Workspace& workspace, const MixedBlock& block, int node, bool trial) {
-    fields_.clear();
-    const double cell_volume = std::pow(model_.grid.cell_size, 3);
-    for (std::int32_t i = 0; i < block.count; ++i) {
-      const Slot& slot = workspace.slots[block.first_slot + i];
-      const NodeRecord& record = workspace.nodes[(static_cast<std::size_t>(block.first_slot) + i) * block_nodes + node];
-      if (!(record.v[3] > 0)) continue;
-      const ContactRecord& contact = workspace.contacts[static_cast<std::size_t>(slot.contact) * block_nodes + node];
-      FieldAtNode field;
-      field.slot = i;
-      field.body = slot.field;
-      field.mass = record.v[3];
-      field.fill = contact.volume / cell_volume;
-      field.outward = {contact.gradient[0], contact.gradient[1], contact.gradient[2]};
-      if (!make_unit(field.outward)) field.outward = {0, 0, 0};
-      field.start = {record.v[0], record.v[1], record.v[2]};
-      field.velocity = trial ? Vec3{record.f[0], record.f[1], record.f[2]} : field.start;
-      field.pairs = 0;
-      fields_.push_back(field);
-    }
-    return fields_.size() > 1 && find_pairs();
-  }
-
-  // Removes the approach of all pairs. `impulse(field, vector)` books what each field gets, `friction_loss(energy)`.
-  template <class Book>
-  void resolve(bool with_friction, Book&& book) {
-    const int passes = pairs_.size() == 1 ? 1 : many_body_passes;
-    change_.assign(fields_.size(), Vec3{});
-    for (int pass = 0; pass < passes; ++pass) {
-      double worst = 0, scale = 0;
-      for (Vec3& c : change_) c = {};
-      for (const PairAtNode& pair : pairs_) {
-        FieldAtNode &a = fields_[pair.a], &b = fields_[pair.b];
-        const Vec3 relative = minus(a.velocity, b.velocity);
-        const double approach = dot(relative, pair.normal);
-        scale = std::max(scale, std::sqrt(dot(relative, relative)));
-        if (!(approach > 0)) continue;
-        worst = std::max(worst, approach);
-        const double m_a = a.mass / a.pairs, m_b = b.mass / b.pairs;
-        const double reduced = m_a * m_b / (m_a + m_b);
-        const double normal_impulse = reduced * approach;
-        Vec3 impulse;
-        for (int c = 0; c < 3; ++c) impulse[c] = -normal_impulse * pair.normal[c];
-        double friction_energy = 0;
-        if (with_friction && pair.friction > 0) {
-          Vec3 slip;
-          for (int c = 0; c < 3; ++c) slip[c] = relative[c] - approach * pair.normal[c];
-          const double slip_speed = std::sqrt(dot(slip, slip));
-          if (slip_speed > 0) {
-            // Eq. (22): the stick impulse, limited by Coulomb's law, against the slip.
-            const double tangential = std::min(pair.friction * normal_impulse, reduced * slip_speed);
-            for (int c = 0; c < 3; ++c) impulse[c] -= tangential * slip[c] / slip_speed;
-            friction_energy = tangential * (slip_speed - 0.5 * tangential / reduced);
-          }
-        }
-        for (int c = 0; c < 3; ++c) {
-          change_[pair.a][c] += impulse[c] / a.mass;
-          change_[pair.b][c] -= impulse[c] / b.mass;
-        }
-        book(a.slot, b.slot, impulse, friction_energy, 0.5 * normal_impulse * approach);
+  void find(const MixedBlock& block, BlockContacts& contacts) {
+    contacts.clear();
+    have_cloud_ = false;
+    for (int node = 0; node < block_nodes; ++node) {
+      ContactNode at;
+      at.node = node;
+      at.first_field = static_cast<std::int32_t>(contacts.fields.size());
+      at.first_pair = static_cast<std::int32_t>(contacts.pairs.size());
+      for (int axis = 0; axis < 3; ++axis) {
+        at.index[axis] = 4 * workspace_.slots[block.first_slot].block[axis] + ((node >> (2 * axis)) & 3);
+        at.place[axis] = model_.grid.domain_min[axis] + model_.grid.cell_size * at.index[axis];
       }
-      for (std::size_t f = 0; f < fields_.size(); ++f)
-        for (int c = 0; c < 3; ++c) fields_[f].velocity[c] += change_[f][c];
-      if (worst <= many_body_tolerance * scale) break;
+      collect_fields(block, at, contacts);
+      collect_walls(at, contacts);
+      if (at.fields > 1) collect_pairs(block, at, contacts);
+      if (at.pairs == 0) {
+        contacts.fields.resize(at.first_field);
+        continue;
+      }
+      contacts.nodes.push_back(at);
     }
   }
-
-  const std::vector<FieldAtNode>& fields() const { return fields_; }
 
  private:
-  bool find_pairs() {
-    pairs_.clear();
-    double total_fill = 0;
-    for (const FieldAtNode& field : fields_) total_fill += field.fill;
-    for (int a = 0; a < static_cast<int>(fields_.size()); ++a)
-      for (int b = a + 1; b < static_cast<int>(fields_.size()); ++b) {
-        FieldAtNode &first = fields_[a], &second = fields_[b];
-        if (std::min(first.mass, second.mass) < smallest_mass_share * (first.mass + second.mass)) continue;
-        const ContactRule& rule = model_.rule_of(first.body, second.body);
-        PairAtNode pair{a, b, {}, rule.friction};
-        if (!pair_normal(first, second, rule, pair.normal)) continue;
-        if (rule.detection == Detection::Gap) {
-          // Where more than two bodies meet, what the others fill closes the gap too.
-          const double others = total_fill - first.fill - second.fill;
-          const ShapeFunction shape = model_.numerics.shape_function;
-          const double gap =
-              std::min(surface_distance(shape, first.fill + others) + surface_distance(shape, second.fill),
-                       surface_distance(shape, first.fill) + surface_distance(shape, second.fill + others));
-          if (gap > rule.gap_offset) continue;
-        }
-        ++first.pairs;
-        ++second.pairs;
-        pairs_.push_back(pair);
+  void collect_fields(const MixedBlock& block, ContactNode& at, BlockContacts& contacts) {
+    const double cell_volume = std::pow(model_.grid.cell_size, 3);
+    for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) {
+      const Slot& slot = workspace_.slots[s];
+      const NodeRecord& record = workspace_.nodes[static_cast<std::size_t>(s) * block_nodes + at.node];
+      if (!(record.v[3] > 0)) continue;
+      const std::size_t place = static_cast<std::size_t>(slot.contact) * block_nodes + at.node;
+      const ContactRecord& sums = workspace_.contacts[place];
+      ContactField field;
+      field.slot = s;
+      field.body = slot.field;
+      field.rigid = slot.rigid;
+      field.fixed = slot.rigid >= 0 && workspace_.rigid[slot.rigid].prescribed;
+      if (slot.rigid >= 0 && !field.fixed) at.coupled = true;
+      field.mass = record.v[3];
+      field.fill = sums.volume / cell_volume;
+      const double inverse_density = 1.0 / model_.material_of(slot.field).density;
+      for (int c = 0; c < 3; ++c) {
+        field.outward[c] = sums.gradient[c];
+        field.gradient[c] = sums.gradient[c] * inverse_density;
       }
-    return !pairs_.empty();
+      // Deep inside a body the gradient is round-off.
+      const double steepness = length(field.outward) * model_.grid.cell_size;
+      if (!(steepness > least_steepness * field.mass && make_unit(field.outward))) field.outward = {};
+      if (workspace_.contact_needs.occupied)
+        for (int cell = 0; cell < 8; ++cell)
+          if (workspace_.occupied[place] >> cell & 1)
+            for (int c = 0; c < 3; ++c) field.occupied[c] += cell >> c & 1 ? -1 : 1;
+      contacts.fields.push_back(field);
+      ++at.fields;
+    }
   }
 
-  // Unit normal out of the first body. Where the rule's own gradient vanishes (inside a body) the other body's serves.
-  static bool pair_normal(const FieldAtNode& first, const FieldAtNode& second, const ContactRule& rule, Vec3& normal) {
-    const Vec3 of_first = first.outward, of_second = {-second.outward[0], -second.outward[1], -second.outward[2]};
-    const bool second_is_master = rule.normal == NormalRule::Master && rule.master == second.body;
-    if (rule.normal == NormalRule::Average) {
-      normal = {of_first[0] + of_second[0], of_first[1] + of_second[1], of_first[2] + of_second[2]};
-    } else {
-      normal = second_is_master ? of_second : of_first;
+  void collect_walls(ContactNode& at, BlockContacts& contacts) {
+    if (at.fields == 0) return;
+    const double reach = model_.numerics.shape_function == ShapeFunction::Linear ? 1.0 : 1.5;
+    for (std::size_t w = 0; w < model_.walls.size(); ++w) {
+      if (distance_to(model_.walls[w], at) >= reach) continue;
+      ContactField field;
+      field.body = -1 - static_cast<std::int32_t>(w);
+      field.fixed = true;
+      contacts.fields.push_back(field);
+      ++at.fields;
     }
-    if (make_unit(normal)) return true;
-    normal = second_is_master ? of_first : of_second;
-    return make_unit(normal);
+  }
+
+  // In cells, positive before the wall.
+  double distance_to(const Wall& wall, const ContactNode& at) const {
+    return dot(minus(at.place, wall.point), wall.normal) / model_.grid.cell_size;
+  }
+
+  void collect_pairs(const MixedBlock& block, ContactNode& at, BlockContacts& contacts) {
+    ContactField* fields = contacts.fields.data() + at.first_field;
+    double total_fill = 0;
+    for (int f = 0; f < at.fields; ++f) total_fill += fields[f].fill;
+    for (int a = 0; a < at.fields; ++a)
+      for (int b = a + 1; b < at.fields; ++b) {
+        const ContactField &first = fields[a], &second = fields[b];
+        if (first.fixed && second.fixed) continue;
+        const Wall* wall = second.body < 0 ? &model_.walls[-1 - second.body] : nullptr;
+        const ContactRule& rule = wall ? wall->rule : model_.rule_of(first.body, second.body);
+        ContactPair pair;
+        pair.a = a;
+        pair.b = b;
+        pair.method = &contact_method(rule.method);
+        if (pair.method->has_friction) pair.friction = rule.friction;
+        if (wall) {
+          pair.normal = times(-1, wall->normal);
+        } else if (pair.method->needs_normal) {
+          if (std::min(first.mass, second.mass) < smallest_mass_share * (first.mass + second.mass)) continue;
+          if (!normal_of(block, rule, at, first, second, pair.normal)) continue;
+        }
+        pair.strains = first.rigid < 0 || (!wall && second.rigid < 0);
+        const ShapeFunction shape = model_.numerics.shape_function;
+        const double h = model_.grid.cell_size;
+        if (pair.method->needs_normal && rule.detection == Detection::Gap) {
+          // Where more than two bodies meet, what the others fill closes the gap too.
+          const double others = total_fill - first.fill - second.fill;
+          const double gap =
+              wall ? surface_distance(shape, first.fill + others) + distance_to(*wall, at)
+                   : std::min(surface_distance(shape, first.fill + others) + surface_distance(shape, second.fill),
+                              surface_distance(shape, first.fill) + surface_distance(shape, second.fill + others));
+          if (gap > rule.gap_offset) continue;
+          if (!pair.strains) pair.gap = std::max(gap, 0.0) * h;
+        }
+        if (pair.method->needs_normal && (first.rigid >= 0 || second.rigid >= 0)) {
+          const double along = wall ? distance_to(*wall, at)
+                                    : 0.5 * (surface_distance(shape, second.fill) - surface_distance(shape, first.fill));
+          pair.beside = times(along * h, pair.normal);
+        }
+        if (pair.method->remembers) pair.pressed = remembers(state_.contact_memory, at.index, first.body, second.body);
+        contacts.pairs.push_back(pair);
+        ++at.pairs;
+      }
+  }
+
+  bool normal_of(const MixedBlock& block, const ContactRule& rule, const ContactNode& at, const ContactField& first,
+                 const ContactField& second, Vector3& normal) {
+    NormalView view{first, second, rule.master == second.body, nullptr, {}};
+    if (normal_rule(rule.normal).needs_cloud) {
+      if (!have_cloud_) cloud_.gather(model_, state_, workspace_, block);
+      have_cloud_ = true;
+      view.cloud = &cloud_;
+      for (int axis = 0; axis < 3; ++axis) view.place[axis] = (at.node >> (2 * axis)) & 3;
+    }
+    if (!pair_normal(rule.normal, view, normal)) return false;
+    // In a symmetry plane the normal lies in the plane; the sums say so, other rules to round-off.
+    bool changed = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double cells = (model_.grid.domain_max[axis] - model_.grid.domain_min[axis]) / model_.grid.cell_size;
+      const bool on_face = (model_.grid.face[2 * axis] != Face::Free && at.index[axis] == 0) ||
+                           (model_.grid.face[2 * axis + 1] != Face::Free && at.index[axis] == std::lround(cells));
+      if (!on_face || normal[axis] == 0) continue;
+      normal[axis] = 0;
+      changed = true;
+    }
+    return !changed || make_unit(normal);
   }
 
   const Model& model_;
-  std::vector<FieldAtNode> fields_;
-  std::vector<PairAtNode> pairs_;
-  std::vector<Vec3> change_;
+  const State& state_;
+  const Workspace& workspace_;
+  NearbyParticles cloud_;
+  bool have_cloud_ = false;
 };
 
-struct BlockSums {
-  double friction_dissipation = 0, contact_work = 0;
+// ------------------------------------------------------------------------------------------------------------- solving
+
+// Velocity of a field where the pair meets.
+Vector3 velocity_of(const ContactField& field, const ContactPair& pair, const std::vector<RigidMotion>& rigid) {
+  return field.rigid < 0 ? field.velocity : plus(field.velocity, cross(rigid[field.rigid].spin, pair.beside));
+}
+
+Vector3 relative_velocity(const ContactField& a, const ContactField& b, const ContactPair& pair,
+                          const std::vector<RigidMotion>& rigid) {
+  return minus(velocity_of(a, pair, rigid), velocity_of(b, pair, rigid));
+}
+
+struct Phase {
+  bool at_end;
+  StartUse use;
+  double time_step;
 };
 
-// Runs work(contact node, block, node, sums of the block) over all nodes of mixed blocks and books the sums in order.
-template <class Work>
-void for_contact_nodes(const Model& model, State& state, Workspace& workspace, bool trial, Work&& work) {
-  const std::int64_t blocks = static_cast<std::int64_t>(workspace.mixed.size());
-  std::vector<BlockSums> sums(workspace.mixed.size());
-#pragma omp parallel num_threads(workspace.threads) if (blocks > 1)
-  {
-    ContactNode contact(model);
-#pragma omp for schedule(dynamic, 4)
-    for (std::int64_t i = 0; i < blocks; ++i)
-      for (int node = 0; node < block_nodes; ++node)
-        if (contact.collect(workspace, workspace.mixed[i], node, trial)) work(contact, workspace.mixed[i], node, sums[i]);
+// Which pairs act, and how many pairs share each field.
+void decide(BlockContacts& contacts, ContactNode& node, const std::vector<RigidMotion>& rigid, const Phase& phase) {
+  const bool at_end = phase.at_end;
+  ContactField* fields = contacts.fields.data() + node.first_field;
+  for (int f = 0; f < node.fields; ++f) {
+    fields[f].velocity = fields[f].before;
+    fields[f].acting = 0;
+    fields[f].impulse = fields[f].couple = {};
   }
-  for (const BlockSums& s : sums) {
-    state.ledger.friction_dissipation += s.friction_dissipation;
-    state.ledger.contact_work += s.contact_work;
+  for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+    ContactPair& pair = contacts.pairs[p];
+    const ContactField &a = fields[pair.a], &b = fields[pair.b];
+    pair.found = relative_velocity(a, b, pair, rigid);
+    pair.normal_impulse = 0;
+    pair.tangential_impulse = {};
+    pair.constraint = {};
+    // The first phase is for the strain. Bodies without strain have all of their contact, friction included, in the second.
+    const bool acts =
+        at_end || (pair.strains && (phase.use != StartUse::Motion || !pair.method->start_reaches_particles));
+    const auto rule = at_end ? pair.method->at_end : pair.method->at_start;
+    if (!rule || !acts) continue;
+    PairView view{pair.normal, {a.outward, b.outward}, pair.mapped, pair.adjusted, pair.found, pair.pressed, 0};
+    if (b.body < 0) view.own_normal[1] = times(-1, pair.normal);
+    if (!at_end) view.mapped = view.adjusted = pair.found;
+    if (pair.method->needs_stress && a.stress_volume + b.stress_volume > 0) {
+      double sum = 0;
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;  // shear component i is that of the other two axes
+        sum += (a.normal_stress[i] + b.normal_stress[i]) * pair.normal[i] * pair.normal[i];
+        sum += 2 * (a.normal_stress[3 + i] + b.normal_stress[3 + i]) * pair.normal[j] * pair.normal[k];
+      }
+      view.normal_stress = sum / (a.stress_volume + b.stress_volume);
+    }
+    pair.constraint = rule(view);
+    if (pair.constraint.hold == Hold::Nothing) continue;
+    if (pair.constraint.hold == Hold::Contact) pair.constraint.target += pair.gap / phase.time_step;
+    ++fields[pair.a].acting;
+    ++fields[pair.b].acting;
+  }
+}
+
+// Inverse of a field's share in a pair; rigid ones that are free have theirs from the body.
+double inverse_share(const ContactField& field) { return field.fixed ? 0 : field.acting / field.mass; }
+
+void reduced_masses(BlockContacts& contacts, ContactNode& node) {
+  const ContactField* fields = contacts.fields.data() + node.first_field;
+  for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+    ContactPair& pair = contacts.pairs[p];
+    const ContactField &a = fields[pair.a], &b = fields[pair.b];
+    const double m_a = a.mass / a.acting, m_b = b.mass / b.acting;
+    pair.reduced_normal = pair.reduced_tangential = a.fixed ? m_b : b.fixed ? m_a : m_a * m_b / (m_a + m_b);
+  }
+}
+
+// One sweep over the pairs of a node: changes the velocities of deformable fields, gives `push(field, impulse, beside)` what
+// free rigid ones are to get, and returns the largest relative velocity that was asked away.
+template <class Push>
+double sweep(BlockContacts& contacts, const ContactNode& node, const std::vector<RigidMotion>& rigid, double& scale,
+             Push&& push) {
+  ContactField* fields = contacts.fields.data() + node.first_field;
+  for (int f = 0; f < node.fields; ++f) fields[f].change = {};
+  double worst = 0;
+  for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+    ContactPair& pair = contacts.pairs[p];
+    const Constraint& constraint = pair.constraint;
+    if (constraint.hold == Hold::Nothing) continue;
+    ContactField &a = fields[pair.a], &b = fields[pair.b];
+    const Vector3 relative = relative_velocity(a, b, pair, rigid);
+    const double along = dot(relative, pair.normal);
+    scale = std::max(scale, length(relative));
+
+    double normal = pair.normal_impulse + pair.reduced_normal * (along - constraint.target);
+    if (constraint.hold == Hold::Contact) normal = std::max(normal, 0.0);
+    const double normal_change = normal - pair.normal_impulse;
+    pair.normal_impulse = normal;
+    worst = std::max(worst, std::abs(normal_change) / pair.reduced_normal);
+
+    Vector3 tangential_change{};
+    if (constraint.hold == Hold::Stick || (constraint.friction && pair.friction > 0)) {
+      Vector3 tangential;
+      for (int c = 0; c < 3; ++c)
+        tangential[c] =
+            pair.tangential_impulse[c] - pair.reduced_tangential * (relative[c] - along * pair.normal[c]);
+      if (constraint.hold != Hold::Stick) {
+        const double most = pair.friction * (std::max(normal, 0.0) + pair.start_push), size = length(tangential);
+        if (size > most)
+          for (double& c : tangential) c *= most / size;
+      }
+      tangential_change = minus(tangential, pair.tangential_impulse);
+      pair.tangential_impulse = tangential;
+      worst = std::max(worst, length(tangential_change) / pair.reduced_tangential);
+    }
+    const Vector3 impulse = minus(tangential_change, times(normal_change, pair.normal));
+    add(a.change, impulse);
+    add(b.change, times(-1, impulse));
+    if (a.rigid >= 0) push(a, impulse, pair.beside);
+    if (b.rigid >= 0) push(b, times(-1, impulse), pair.beside);
+  }
+  for (int f = 0; f < node.fields; ++f) {
+    ContactField& field = fields[f];
+    if (!field.fixed && field.rigid < 0) add(field.velocity, times(1 / field.mass, field.change));
+  }
+  return worst;
+}
+
+Vector3 impulse_on_a(const ContactPair& pair) {
+  return minus(pair.tangential_impulse, times(pair.normal_impulse, pair.normal));
+}
+
+// Impulses of the fields, and the energy: an impulse does the work of the mean of the relative velocities before and after.
+void sum_up(BlockContacts& contacts, ContactNode& node, const std::vector<RigidMotion>& rigid) {
+  ContactField* fields = contacts.fields.data() + node.first_field;
+  for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+    const ContactPair& pair = contacts.pairs[p];
+    if (pair.constraint.hold == Hold::Nothing) continue;
+    ContactField &a = fields[pair.a], &b = fields[pair.b];
+    const Vector3 impulse = impulse_on_a(pair);
+    add(a.impulse, impulse);
+    add(b.impulse, times(-1, impulse));
+    const Vector3 couple = cross(pair.beside, impulse);
+    add(a.couple, couple);
+    add(b.couple, times(-1, couple));
+    const Vector3 mean = times(0.5, plus(pair.found, relative_velocity(a, b, pair, rigid)));
+    const double tangential_work = dot(pair.tangential_impulse, mean);
+    const bool heat = pair.constraint.hold != Hold::Stick;
+    if (heat) contacts.friction_dissipation -= tangential_work;
+    contacts.contact_work += (heat ? 0 : tangential_work) - pair.normal_impulse * dot(pair.normal, mean);
+  }
+}
+
+// The nodes of free rigid bodies.
+class CoupledNodes {
+ public:
+  CoupledNodes(Workspace& workspace, std::vector<RigidMotion>& rigid) : workspace_(workspace), rigid_(rigid) {}
+
+  void solve() {
+    for (std::size_t i = 0; i < workspace_.mixed.size(); ++i)
+      for (ContactNode& node : workspace_.block_contacts[i].nodes)
+        if (node.coupled) nodes_.push_back({&workspace_.block_contacts[i], &node});
+    if (nodes_.empty()) return;
+    share_masses();
+    std::vector<Vector3> impulse(rigid_.size()), moment(rigid_.size());
+    for (int pass = 0; pass < most_coupled_sweeps; ++pass) {
+      double worst = 0, scale = 0;
+      std::fill(impulse.begin(), impulse.end(), Vector3{});
+      std::fill(moment.begin(), moment.end(), Vector3{});
+      for (const auto& [contacts, node] : nodes_) {
+        const Vector3& place = node->place;
+        worst = std::max(worst, sweep(*contacts, *node, rigid_, scale,
+                                      [&](const ContactField& field, const Vector3& push, const Vector3& beside) {
+                                        if (field.fixed) return;
+                                        const Vector3 r = minus(plus(place, beside), rigid_[field.rigid].centre);
+                                        add(impulse[field.rigid], push);
+                                        add(moment[field.rigid], cross(r, push));
+                                      }));
+      }
+      for (std::size_t r = 0; r < rigid_.size(); ++r)
+        if (!rigid_[r].prescribed) push(rigid_[r], impulse[r], moment[r]);
+      for (const auto& [contacts, node] : nodes_)
+        for_free_rigid(*contacts, *node,
+                       [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(node->place); });
+      if (worst <= coupled_tolerance * scale) break;
+    }
+    for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node, rigid_);
+  }
+
+ private:
+  template <class Work>
+  static void for_free_rigid(BlockContacts& contacts, const ContactNode& node, Work&& work) {
+    for (int f = node.first_field; f < node.first_field + node.fields; ++f)
+      if (contacts.fields[f].rigid >= 0 && !contacts.fields[f].fixed) work(contacts.fields[f]);
+  }
+
+  void share_masses() {
+    std::vector<double> nodal_mass(rigid_.size(), 0.0);
+    for (const auto& [contacts, node] : nodes_)
+      for_free_rigid(*contacts, *node, [&](ContactField& field) {
+        if (field.acting > 0) nodal_mass[field.rigid] += field.mass * rigid_[field.rigid].images;
+      });
+    for (const auto& [contacts, node] : nodes_) {
+      reduced_masses(*contacts, *node);
+      const ContactField* fields = contacts->fields.data() + node->first_field;
+      for (int p = node->first_pair; p < node->first_pair + node->pairs; ++p) {
+        ContactPair& pair = contacts->pairs[p];
+        if (pair.constraint.hold == Hold::Nothing) continue;
+        double normal = 0, tangential = 0;
+        for (const int f : {pair.a, pair.b}) {
+          const ContactField& field = fields[f];
+          if (field.rigid < 0 || field.fixed) {
+            normal += inverse_share(field);
+            tangential += inverse_share(field);
+            continue;
+          }
+          const RigidMotion& body = rigid_[field.rigid];
+          const double part = field.mass / (field.acting * nodal_mass[field.rigid]);
+          const Vector3 r = minus(plus(node->place, pair.beside), body.centre);
+          // Velocity at the node from a unit impulse along the normal, by rotation.
+          const Vector3 turned = cross(times_matrix(body.inverse_inertia, cross(r, pair.normal)), r);
+          const double along = dot(turned, pair.normal);
+          const double across = length(minus(turned, times(along, pair.normal)));
+          normal += (1 / body.mass + along + across) / part;
+          tangential += (1 / body.mass + dot(r, r) * body.largest_inverse_inertia + across) / part;
+        }
+        pair.reduced_normal = 1 / normal;
+        pair.reduced_tangential = 1 / tangential;
+      }
+    }
+  }
+
+  static Vector3 times_matrix(const Matrix3& m, const Vector3& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
+
+  // The impulse on what is modelled of a body; its images take the mirrored one.
+  static void push(RigidMotion& body, Vector3 impulse, Vector3 moment) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int c = 0; c < 3; ++c) {
+        if (!body.cut[axis]) continue;
+        if (c == axis) impulse[c] = 0;
+        if (c != axis) moment[c] = 0;
+      }
+    add(body.velocity, times(body.images / body.mass, impulse));
+    add(body.spin, times(body.images, times_matrix(body.inverse_inertia, moment)));
+  }
+
+  Workspace& workspace_;
+  std::vector<RigidMotion>& rigid_;
+  std::vector<std::pair<BlockContacts*, ContactNode*>> nodes_;
+};
+
+// Runs work(block's contacts) over the mixed blocks in parallel.
+template <class Work>
+void for_blocks(Workspace& workspace, Work&& work) {
+  const std::int64_t blocks = static_cast<std::int64_t>(workspace.mixed.size());
+#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 4) if (blocks > 1)
+  for (std::int64_t i = 0; i < blocks; ++i) work(workspace.block_contacts[i]);
+}
+
+double* velocity_record(Workspace& workspace, const ContactField& field, const ContactNode& node, bool trial) {
+  NodeRecord& record = workspace.nodes[static_cast<std::size_t>(field.slot) * block_nodes + node.node];
+  return trial ? record.f : record.v;
+}
+
+// Loads velocities, decides, and solves all nodes.
+void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Phase& phase) {
+  bool any_free = false;
+  for (const RigidMotion& body : rigid) any_free = any_free || !body.prescribed;
+  for_blocks(workspace, [&](BlockContacts& contacts) {
+    contacts.friction_dissipation = contacts.contact_work = 0;
+    for (ContactNode& node : contacts.nodes) {
+      for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
+        ContactField& field = contacts.fields[f];
+        field.before = {};
+        if (field.slot < 0) continue;
+        const double* v = velocity_record(workspace, field, node, phase.at_end);
+        field.before = {v[0], v[1], v[2]};
+        if (phase.at_end && workspace.contact_needs.stress && field.rigid < 0) {
+          const std::int32_t contact = workspace.slots[field.slot].contact;
+          const ContactStress& sums =
+              workspace.contact_stress[static_cast<std::size_t>(contact) * block_nodes + node.node];
+          std::copy_n(sums.direct, 3, field.normal_stress);
+          std::copy_n(sums.shear, 3, field.normal_stress + 3);
+          field.stress_volume = sums.volume;
+        }
+      }
+      decide(contacts, node, rigid, phase);
+      if (node.coupled) continue;
+      solve_node(contacts, node, rigid);
+      sum_up(contacts, node, rigid);
+    }
+  });
+  if (any_free) CoupledNodes(workspace, rigid).solve();
+}
+
+// Momentum that walls and rigid bodies take, and the forces on bodies.
+void book_impulses(State& state, Workspace& workspace, double dt) {
+  for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
+    for (ContactNode& node : workspace.block_contacts[i].nodes)
+      for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
+        ContactField& field = workspace.block_contacts[i].fields[f];
+        // In the first phase only what reaches the particles is an impulse; see start_contact.
+        if (field.slot < 0) {
+          for (int c = 0; c < 3; ++c) state.ledger.boundary_impulse[c] -= field.impulse[c];
+          continue;
+        }
+        for (int c = 0; c < 3; ++c) workspace.slot_contact_force[field.slot][c] += field.impulse[c] / dt;
+        if (field.rigid < 0) continue;
+        RigidMotion& body = workspace.rigid[field.rigid];
+        add(body.impulse, field.impulse);
+        if (body.prescribed)
+          body.contact_work += dot(field.impulse, field.before) + dot(field.couple, body.spin);
+        else
+          add(state.ledger.contact_couple, field.couple);
+      }
+}
+
+// Where bodies share one velocity field there are only walls, and nothing says which body pushes on them.
+void book_contact_forces(const Model& model, State& state, const Workspace& workspace) {
+  if (!model.own_fields && model.bodies.size() > 1) return;
+  for (BodyState& body : state.bodies) body.totals.contact_force = {};
+  for (const MixedBlock& block : workspace.mixed)
+    for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s)
+      add(state.bodies[workspace.slots[s].field].totals.contact_force, workspace.slot_contact_force[s]);
+}
+
+void book_energies(State& state, const Workspace& workspace) {
+  for (std::size_t i = 0; i < workspace.mixed.size(); ++i) {
+    state.ledger.friction_dissipation += workspace.block_contacts[i].friction_dissipation;
+    state.ledger.contact_work += workspace.block_contacts[i].contact_work;
   }
 }
 
@@ -209,61 +541,160 @@ double surface_distance(ShapeFunction shape, double fraction) {
   return s;
 }
 
-void remove_approach(const Model& model, State& state, Workspace& workspace) {
-  // Where the stress comes last only the strain sees it, and the grid loses nothing.
-  const double booked = model.numerics.update_order == UpdateOrder::StressFirst ? 1.0 : 0.0;
-  std::fill(workspace.approach.begin(), workspace.approach.end(), Vec3{});
-  for_contact_nodes(
-      model, state, workspace, false, [&](ContactNode& contact, const MixedBlock& block, int node, BlockSums& sums) {
-        contact.resolve(false, [&](int, int, const Vec3&, double, double loss) { sums.contact_work -= booked * loss; });
-        for (const FieldAtNode& field : contact.fields()) {
-          const std::size_t slot = static_cast<std::size_t>(block.first_slot) + field.slot;
-          double* v = workspace.nodes[slot * block_nodes + node].v;
-          Vec3& taken = workspace.approach[static_cast<std::size_t>(workspace.slots[slot].contact) * block_nodes + node];
-          for (int c = 0; c < 3; ++c) {
-            taken[c] = v[c] - field.velocity[c];
-            v[c] = field.velocity[c];
-          }
-        }
-      });
+ContactNeeds contact_needs(const Model& model) {
+  ContactNeeds needs;
+  const auto rule = [&](const ContactRule& r, bool wall) {
+    const ContactMethodDef& method = contact_method(r.method);
+    needs.any = true;
+    needs.start = needs.start || method.at_start;
+    needs.start_kept = needs.start_kept || (method.at_start && !method.start_reaches_particles);
+    needs.stress = needs.stress || method.needs_stress;
+    needs.memory = needs.memory || method.remembers;
+    if (wall || !method.needs_normal) return;
+    needs.occupied = needs.occupied || normal_rule(r.normal).needs_occupied;
+    needs.cloud = needs.cloud || normal_rule(r.normal).needs_cloud;
+  };
+  if (model.own_fields && model.bodies.size() > 1) {
+    rule(model.contact, false);
+    for (const PairRule& pair : model.pairs) rule(pair.rule, false);
+  }
+  for (const Wall& wall : model.walls) rule(wall.rule, true);
+  return needs;
 }
 
-void restore_approach(Workspace& workspace) {
+void find_contacts(const Model& model, const State& state, Workspace& workspace) {
+  const std::int64_t blocks = static_cast<std::int64_t>(workspace.mixed.size());
+  if (workspace.block_contacts.size() < workspace.mixed.size()) workspace.block_contacts.resize(workspace.mixed.size());
+#pragma omp parallel num_threads(workspace.threads) if (blocks > 1)
+  {
+    Finder finder(model, state, workspace);
+#pragma omp for schedule(dynamic, 4)
+    for (std::int64_t i = 0; i < blocks; ++i) finder.find(workspace.mixed[i], workspace.block_contacts[i]);
+  }
   for (const MixedBlock& block : workspace.mixed)
-    for (std::int32_t i = 0; i < block.count; ++i) {
-      const std::size_t slot = static_cast<std::size_t>(block.first_slot) + i;
-      const Vec3* taken = &workspace.approach[static_cast<std::size_t>(workspace.slots[slot].contact) * block_nodes];
-      for (int node = 0; node < block_nodes; ++node)
-        for (int c = 0; c < 3; ++c) workspace.nodes[slot * block_nodes + node].v[c] += taken[node][c];
-    }
+    for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) workspace.slot_contact_force[s] = {};
 }
 
-void apply_contact_force(const Model& model, State& state, Workspace& workspace, double dt) {
-  for (const MixedBlock& block : workspace.mixed)
-    for (std::int32_t i = 0; i < block.count; ++i) workspace.slot_contact_force[block.first_slot + i] = {};
-  for_contact_nodes(
-      model, state, workspace, true, [&](ContactNode& contact, const MixedBlock& block, int node, BlockSums& sums) {
-        contact.resolve(true, [&](int a, int b, const Vec3& impulse, double friction, double loss) {
-          sums.friction_dissipation += friction;
-          sums.contact_work -= loss;
-          for (int c = 0; c < 3; ++c) {
-            workspace.slot_contact_force[block.first_slot + a][c] += impulse[c] / dt;
-            workspace.slot_contact_force[block.first_slot + b][c] -= impulse[c] / dt;
-          }
-        });
-        for (const FieldAtNode& field : contact.fields()) {
-          double* trial =
-              workspace.nodes[(static_cast<std::size_t>(block.first_slot) + field.slot) * block_nodes + node].f;
-          for (int c = 0; c < 3; ++c) trial[c] = field.velocity[c];
-        }
-      });
-  for (BodyState& body : state.bodies) body.totals.contact_force = {};
-  for (const MixedBlock& block : workspace.mixed)
-    for (std::int32_t i = 0; i < block.count; ++i) {
-      // Fields are bodies wherever there are mixed blocks.
-      Vector3& force = state.bodies[workspace.slots[block.first_slot + i].field].totals.contact_force;
-      for (int c = 0; c < 3; ++c) force[c] += workspace.slot_contact_force[block.first_slot + i][c];
+void solve_node(BlockContacts& contacts, ContactNode& node, const std::vector<RigidMotion>& rigid) {
+  int acting = 0;
+  for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p)
+    if (contacts.pairs[p].constraint.hold != Hold::Nothing) ++acting;
+  if (acting == 0) return;
+  reduced_masses(contacts, node);
+  for (int pass = 0; pass < (acting == 1 ? 1 : most_sweeps); ++pass) {
+    double scale = 0;
+    const double worst =
+        sweep(contacts, node, rigid, scale, [](const ContactField&, const Vector3&, const Vector3&) {});
+    if (worst <= sweep_tolerance * scale) break;
+  }
+}
+
+void start_contact(State& state, Workspace& workspace, double dt, StartUse use) {
+  if (!workspace.contact_needs.start) return;
+  // The strain of a later mapping must not move the rigid bodies.
+  std::vector<RigidMotion> copy;
+  if (use == StartUse::Strain) copy = workspace.rigid;
+  std::vector<RigidMotion>& rigid = use == StartUse::Strain ? copy : workspace.rigid;
+  solve_phase(workspace, rigid, {false, use, dt});
+
+  for_blocks(workspace, [&](BlockContacts& contacts) {
+    for (ContactNode& node : contacts.nodes) {
+      ContactField* fields = contacts.fields.data() + node.first_field;
+      for (int f = 0; f < node.fields; ++f) fields[f].kept = fields[f].impulse = fields[f].couple = {};
+      for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+        ContactPair& pair = contacts.pairs[p];
+        pair.mapped = pair.found;
+        ContactField &a = fields[pair.a], &b = fields[pair.b];
+        pair.adjusted = relative_velocity(a, b, pair, rigid);
+        if (pair.constraint.hold == Hold::Nothing) continue;
+        // `impulse` is what reaches the particles, `kept` the momentum that does not.
+        const Vector3 impulse = impulse_on_a(pair), couple = cross(pair.beside, impulse);
+        const bool reaches = pair.method->start_reaches_particles;
+        if (reaches) pair.start_push = std::max(pair.normal_impulse, 0.0);
+        add(reaches ? a.impulse : a.kept, impulse);
+        add(reaches ? b.impulse : b.kept, times(-1, impulse));
+        add(reaches ? a.couple : a.kept_couple, couple);
+        add(reaches ? b.couple : b.kept_couple, times(-1, couple));
+      }
+      for (int f = 0; f < node.fields; ++f) {
+        ContactField& field = fields[f];
+        if (field.slot < 0) continue;
+        double* v = velocity_record(workspace, field, node, false);
+        for (int c = 0; c < 3; ++c) v[c] = field.velocity[c];
+        if (field.rigid >= 0) continue;
+        field.kept = times(-1 / field.mass, field.kept);
+        field.returned = times(-1 / field.mass, field.impulse);
+      }
     }
+  });
+  if (use == StartUse::Strain) return;
+  for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
+    for (ContactNode& node : workspace.block_contacts[i].nodes)
+      for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
+        const ContactField& field = workspace.block_contacts[i].fields[f];
+        if (field.rigid < 0) continue;
+        RigidMotion& body = workspace.rigid[field.rigid];
+        add(body.kept_impulse, field.kept);
+        add(body.kept_moment, plus(cross(minus(node.place, body.centre), field.kept), field.kept_couple));
+      }
+  book_impulses(state, workspace, dt);
+  book_energies(state, workspace);
+}
+
+void return_start(Workspace& workspace) {
+  if (!workspace.contact_needs.start) return;
+  for_blocks(workspace, [&](BlockContacts& contacts) {
+    for (const ContactNode& node : contacts.nodes)
+      for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
+        const ContactField& field = contacts.fields[f];
+        if (field.slot < 0 || field.rigid >= 0) continue;
+        double* v = velocity_record(workspace, field, node, false);
+        for (int c = 0; c < 3; ++c) v[c] += field.returned[c];
+      }
+  });
+}
+
+void end_contact(const Model& model, State& state, Workspace& workspace, double dt) {
+  solve_phase(workspace, workspace.rigid, {true, StartUse::MotionAndStrain, dt});
+  for_blocks(workspace, [&](BlockContacts& contacts) {
+    for (const ContactNode& node : contacts.nodes)
+      for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
+        const ContactField& field = contacts.fields[f];
+        if (field.slot < 0) continue;
+        double* trial = velocity_record(workspace, field, node, true);
+        for (int c = 0; c < 3; ++c) trial[c] = field.velocity[c];
+      }
+  });
+  book_impulses(state, workspace, dt);
+  book_contact_forces(model, state, workspace);
+  book_energies(state, workspace);
+  if (workspace.contact_needs.memory) {
+    state.contact_memory.clear();
+    for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
+      for (const ContactNode& node : workspace.block_contacts[i].nodes)
+        for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+          const BlockContacts& contacts = workspace.block_contacts[i];
+          const ContactPair& pair = contacts.pairs[p];
+          if (pair.method->remembers && pair.normal_impulse > 0)
+            remember(state.contact_memory, node.index, contacts.fields[node.first_field + pair.a].body,
+                     contacts.fields[node.first_field + pair.b].body);
+        }
+    order_memory(state.contact_memory);
+  }
+}
+
+void book_kept_start(State& state, const Workspace& workspace) {
+  if (!workspace.contact_needs.start_kept) return;
+  double given = 0;
+  for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
+    for (const ContactNode& node : workspace.block_contacts[i].nodes)
+      for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
+        const ContactField& field = workspace.block_contacts[i].fields[f];
+        if (field.slot < 0 || field.rigid >= 0) continue;
+        const NodeRecord& record = workspace.nodes[static_cast<std::size_t>(field.slot) * block_nodes + node.node];
+        for (int c = 0; c < 3; ++c) given += record.v[3] * field.kept[c] * (record.f[c] - record.v[c]);
+      }
+  state.ledger.transfer_dissipation += given;
 }
 
 }  // namespace ogive

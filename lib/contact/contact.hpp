@@ -1,4 +1,5 @@
-// Contact between velocity fields at shared nodes: Huang et al. 2010, sections 2 and 3, for any number of bodies.
+// Contact between velocity fields at shared nodes and with rigid walls, for any number of bodies: finding where bodies
+// meet, and the impulses there. What holds a pair is said by its method (contact/method.hpp).
 #pragma once
 
 #include "grid.hpp"
@@ -7,19 +8,35 @@
 
 namespace ogive {
 
-// Eqs. (23)-(25): takes the approach of bodies in contact out of the nodal velocities (second method only).
-// Node records hold {velocity, mass | -}.
-void remove_approach(const Model& model, State& state, Workspace& workspace);
+ContactNeeds contact_needs(const Model& model);
 
-// Puts it back once the trial velocities stand, so that the particles' increments (34) contain the jump of (25).
-void restore_approach(Workspace& workspace);
+// Nodes, pairs and normals of this step, from the mapped masses and contact sums. Once a step.
+void find_contacts(const Model& model, const State& state, Workspace& workspace);
 
-// Eqs. (12)-(22) and (14): normal and friction impulses that correct the trial velocities.
+// The first phase, on the regular grid: node records hold {mapped velocity, mass | -}, and the velocity is changed.
+enum class StartUse {
+  MotionAndStrain,  // stress first
+  Motion,           // stress last: only what the particles never see, which belongs to the acceleration
+  Strain            // stress last, the velocities that give the strain: nothing is booked, rigid bodies stay as they are
+};
+void start_contact(State& state, Workspace& workspace, double dt, StartUse use);
+
+// Puts back, once the trial velocities stand, what the particles' increments (34) are to contain.
+void return_start(Workspace& workspace);
+
+// The second phase, on the deformed grid: impulses that correct the trial velocities, Eqs. (12)-(22) and (14).
 // Node records hold {velocity at the beginning of the step, mass | trial velocity}; the trial velocity is replaced.
-void apply_contact_force(const Model& model, State& state, Workspace& workspace, double dt);
+void end_contact(const Model& model, State& state, Workspace& workspace, double dt);
+
+// For the ledger, before node records become {velocity, 0 | acceleration, 0}: the grid's increments act on the particles'
+// own velocities, which are the mapped ones, not those that the first phase left.
+void book_kept_start(State& state, const Workspace& workspace);
 
 // Distance of a flat surface from a node, in cells and positive outside the body, at which the body fills `fraction` of
 // the node's shape function (docs/theory.md, section on the gap).
 double surface_distance(ShapeFunction shape, double fraction);
+
+// The solver, for one node that is not coupled to others: changes `velocity` of the fields by the constraints of the pairs.
+void solve_node(BlockContacts& contacts, ContactNode& node, const std::vector<RigidMotion>& rigid);
 
 }  // namespace ogive

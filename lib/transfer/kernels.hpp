@@ -23,6 +23,13 @@ struct alignas(32) ContactRecord {
   double volume;
 };
 
+// Where a contact method asks for it: {sum of V_p sigma_p N: xx yy zz, sum of V_p N | yz xz xy, -}.
+struct alignas(64) ContactStress {
+  double direct[3];
+  double volume;
+  double shear[4];
+};
+
 // Particles of one group and the nodes they touch.
 struct KernelGroup {
   std::int64_t begin, end;        // end with padding
@@ -92,6 +99,11 @@ struct KernelTable {
   void (*map_internal_force[2])(const KernelGroup&, const KernelParticles&);
   // Eqs. (33), (34) by shape function, without and with affine velocity.
   void (*update_particles[2][2])(const KernelGroup&, const KernelParticles&, MoveSums&);
+  // Sums of the stress at nodes where bodies meet; the last argument holds the records of the neighbour blocks.
+  void (*map_contact_stress[2])(const KernelGroup&, const KernelParticles&, ContactStress* const (&)[27]);
+  // XPIC: one pass of the filter from `filter[].v` to momentum in `filter[].f`, and the particle update.
+  void (*filter_velocity[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27]);
+  void (*update_particles_xpic[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27], MoveSums&);
 };
 
 // The best table for this processor, or the one that the environment variable OGIVE_ISA names (x86-64-v2, x86-64-v3,

@@ -76,8 +76,17 @@ const std::vector<WrongInput> kWrongInputs = {
     {"bad_method_name",
      {},
      {"--set", "contact.method=huang_frist"},
-     {"--set contact.method=huang_frist: contact.method: must be one of single_field, huang_first, huang_second, got "
-      "\"huang_frist\"; did you mean \"huang_first\"?"}},
+     {"--set contact.method=huang_frist: contact.method: must be one of single_field, huang_first, huang_second, "
+      "york, hu_chen, bardenhagen_2000, bardenhagen_2001, pan_2008, got \"huang_frist\"; did you mean \"huang_first\"?"}},
+    {"bad_normal",
+     {},
+     {"--set", "contact.normal=averge"},
+     {"--set contact.normal=averge: contact.normal: must be one of master, average, volume_gradient, occupied_cell, "
+      "logistic_regression, got \"averge\"; did you mean \"average\"?"}},
+    {"xpic_order_without_xpic",
+     {},
+     {"--set", "numerics.xpic_order=3"},
+     {"--set numerics.xpic_order=3: numerics.xpic_order: needs transfer = \"xpic\""}},
     {"bad_set_path",
      {},
      {"--set", "contact.methd=huang_first"},

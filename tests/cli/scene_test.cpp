@@ -202,7 +202,7 @@ TEST(Scene, messages_name_place_key_value_and_expectation) {
             "--set grid.upper.1=-1: grid.upper[1]: must be > grid.lower[1] (0), got -1");
   EXPECT_EQ(refusal({{"contact.method", "huang_frist"}}),
             "--set contact.method=huang_frist: contact.method: must be one of single_field, huang_first, huang_second, "
-            "got \"huang_frist\"; did you mean \"huang_first\"?");
+            "york, hu_chen, bardenhagen_2000, bardenhagen_2001, pan_2008, got \"huang_frist\"; did you mean \"huang_first\"?");
   EXPECT_EQ(
       refusal({{"bodies.ball.material", "zink"}}),
       "--set bodies.ball.material=zink: bodies.ball.material: must be the name of a material of the scene (zinc), "
@@ -274,6 +274,65 @@ TEST(Text, numbers_for_people) {
   EXPECT_EQ(driver::bytes(1230000000), "1.23 GB");
   EXPECT_EQ(driver::shortest(0.1), "0.1");
   EXPECT_EQ(std::stod(driver::exact(0.1)), 0.1);
+}
+
+TEST(Scene, rigid_bodies_walls_and_pairs_with_methods_of_their_own) {
+  const std::string more = R"toml([bodies.incline]
+material = "zinc"
+box = { size = [8, 2, 1], centre = [5, 5, 1], axis = ["-sin(30*deg)", 0, "cos(30*deg)"] }
+spacing = 0.5
+formulation = "rigid_prescribed"
+[bodies.punch]
+material = "zinc"
+box = { size = [1, 1, 1], centre = [8, 8, 8] }
+spacing = 0.5
+formulation = "rigid_prescribed"
+angular_centre = [8, 8, 8]
+[[bodies.punch.motion]]
+time = 0
+[[bodies.punch.motion]]
+time = "V0/50"
+velocity = [0, 0, "-V0"]
+angular_velocity = [0, 0, 1]
+[contact]
+method = "pan_2008"
+normal = "occupied_cell"
+friction = 0.25
+[[contact.pairs]]
+bodies = ["ball", "target"]
+method = "york"
+friction = 0
+[[walls]]
+point = [0, 0, 0.5]
+normal = [0, "-sin(10*deg)", "cos(10*deg)"]
+[[walls]]
+point = [0, 0, 9]
+normal = [0, 0, -1]
+method = "huang_first"
+friction = 0
+)toml";
+  const Scene scene = scene_of({{"bodies.ball.formulation", "rigid"}, {"numerics.transfer", "xpic"}, {"numerics.xpic_order", "5"}}, more);
+  EXPECT_EQ(scene.numerics.xpic_order, 5);
+  EXPECT_EQ(scene.bodies[1].formulation, OGIVE_FORMULATION_RIGID_FREE);
+  EXPECT_EQ(scene.bodies[2].formulation, OGIVE_FORMULATION_RIGID_PRESCRIBED);
+  ASSERT_EQ(scene.bodies[3].motion.size(), 2U);
+  EXPECT_EQ(scene.bodies[3].motion[1].time, 2.0);
+  EXPECT_EQ(scene.bodies[3].motion[1].velocity[2], -100.0);
+  EXPECT_EQ(scene.contact.method, OGIVE_CONTACT_PAN_2008);
+  ASSERT_EQ(scene.contact_pairs.size(), 1U);
+  EXPECT_EQ(scene.contact_pairs[0].rule.method, OGIVE_CONTACT_YORK);
+  EXPECT_EQ(scene.contact_pairs[0].rule.normal, OGIVE_NORMAL_OCCUPIED_CELL);  // the scene's
+  ASSERT_EQ(scene.walls.size(), 2U);
+  EXPECT_EQ(scene.walls[0].rule.method, OGIVE_CONTACT_PAN_2008);
+  EXPECT_EQ(scene.walls[0].rule.friction, 0.25);
+  EXPECT_EQ(scene.walls[1].rule.method, OGIVE_CONTACT_HUANG_FIRST);
+  EXPECT_EQ(refusal({{"bodies.ball.formulation", "rigd"}}),
+            "--set bodies.ball.formulation=rigd: bodies.ball.formulation: must be one of deformable, rigid, "
+            "rigid_prescribed, got \"rigd\"; did you mean \"rigid\"?");
+  EXPECT_NE(refusal({}, "[[bodies.extra.motion]]\ntime = 0\n[bodies.extra]\nmaterial = \"zinc\"\nsphere = { radius = 1 }\n"
+                        "spacing = 0.5\n").find("bodies.extra.motion: needs formulation = \"rigid_prescribed\""),
+            std::string::npos);
+  EXPECT_NE(refusal({}, "[[walls]]\npoint = [0, 0, 0]\n").find("walls[0].normal: missing"), std::string::npos);
 }
 
 }  // namespace

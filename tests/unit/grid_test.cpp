@@ -32,10 +32,12 @@ struct World {
     material.validate();
     model.materials.push_back(material);
     for (const auto& places : bodies) {
-      model.bodies.push_back({"body " + std::to_string(model.bodies.size()), 0});
+      model.bodies.emplace_back();
+      model.bodies.back().name = "body " + std::to_string(model.bodies.size() - 1);
+      model.bodies.back().material = 0;
       BodyState body;
       body.particles = static_cast<std::int64_t>(places.size());
-      allocate_particles(material, body.particles, body);
+      allocate_particles(material, false, body.particles, body);
       for (std::size_t p = 0; p < places.size(); ++p) {
         for (int c = 0; c < 3; ++c) body.position[4 * p + c] = places[p][c];
         body.position[4 * p + 3] = 1 + static_cast<double>(p);
@@ -44,6 +46,7 @@ struct World {
       }
       state.bodies.push_back(std::move(body));
     }
+    model.complete();
     workspace.kernels = &kernel_table();
     workspace.materials.resize(bodies.size());
     bin_particles(model, state, workspace, true);

@@ -102,9 +102,12 @@ class Scene {
   }
 
   Scene& numerics(std::int32_t shape, double factor, Vec3 gravity = {}, std::int32_t threads = 1,
-                  std::optional<std::int32_t> transfer = {}, std::int32_t update_order = OGIVE_UPDATE_STRESS_FIRST) {
+                  std::optional<std::int32_t> transfer = {}, std::int32_t update_order = OGIVE_UPDATE_STRESS_FIRST,
+                  std::optional<double> maximum_time_step = {}, std::int32_t xpic_order = 2) {
     ogive_numerics_def def;
     ogive_numerics_def_init(&def, sizeof def);
+    if (maximum_time_step) def.maximum_time_step = *maximum_time_step;
+    def.xpic_order = xpic_order;
     // Trilinear functions are verified with the papers' transfer, B-splines with the engine's default.
     if (shape == OGIVE_SHAPE_LINEAR) def.transfer = OGIVE_TRANSFER_FLIP;
     if (transfer) def.transfer = *transfer;
@@ -117,8 +120,9 @@ class Scene {
     return *this;
   }
 
-  Scene& contact(std::int32_t method, std::int32_t detection = OGIVE_DETECTION_GAP, double friction = 0,
-                 std::int32_t normal = OGIVE_NORMAL_AVERAGE, std::optional<double> gap_offset = {}) {
+  static ogive_contact_def contact_def(std::int32_t method, std::int32_t detection = OGIVE_DETECTION_GAP,
+                                       double friction = 0, std::int32_t normal = OGIVE_NORMAL_AVERAGE,
+                                       std::optional<double> gap_offset = {}) {
     ogive_contact_def def;
     ogive_contact_def_init(&def, sizeof def);
     if (gap_offset) def.gap_offset = *gap_offset;
@@ -126,7 +130,29 @@ class Scene {
     def.detection = detection;
     def.friction = friction;
     def.normal = normal;
+    return def;
+  }
+
+  Scene& contact(std::int32_t method, std::int32_t detection = OGIVE_DETECTION_GAP, double friction = 0,
+                 std::int32_t normal = OGIVE_NORMAL_AVERAGE, std::optional<double> gap_offset = {}) {
+    const ogive_contact_def def = contact_def(method, detection, friction, normal, gap_offset);
     check(ogive_world_set_contact(get(), &def));
+    return *this;
+  }
+
+  // A plane through `point`; bodies lie where `normal` points to.
+  Scene& wall(Vec3 point, Vec3 normal, double friction = 0, std::optional<double> gap_offset = {},
+              std::int32_t method = OGIVE_CONTACT_HUANG_SECOND) {
+    ogive_wall_def def;
+    ogive_wall_def_init(&def, sizeof def);
+    for (int c = 0; c < 3; ++c) {
+      def.point[c] = point[c];
+      def.normal[c] = normal[c];
+    }
+    def.method = method;
+    def.friction = friction;
+    if (gap_offset) def.gap_offset = *gap_offset;
+    check(ogive_wall_add(get(), &def));
     return *this;
   }
 
@@ -145,6 +171,13 @@ class Scene {
       def.angular_velocity[c] = angular[c];
       def.angular_centre[c] = about[c];
     }
+    return def;
+  }
+
+  static ogive_body_def rigid(ogive_material_id material, std::int32_t formulation, Vec3 velocity, Vec3 angular = {},
+                              Vec3 about = {}) {
+    ogive_body_def def = body(material, velocity, angular, about);
+    def.formulation = formulation;
     return def;
   }
 
