@@ -169,7 +169,7 @@ void map_contact_stress(const Model& model, State& state, Workspace& workspace) 
   if (workspace.contact_stress.empty()) return;
   std::memset(static_cast<void*>(workspace.contact_stress.data()), 0,
               workspace.contact_stress.size() * sizeof(ContactStress));
-  const auto map = workspace.kernels->map_contact_stress[static_cast<int>(model.numerics.shape_function)];
+  const auto map = workspace.kernels->optional->map_contact_stress[static_cast<int>(model.numerics.shape_function)];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
     if (!link.contact || link.rigid) return;
     ContactStress* nodes[27];
@@ -200,7 +200,7 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
     workspace.filter[i].v[3] = 0;
   }
   unfold_filter(workspace);
-  const auto pass = workspace.kernels->filter_velocity[static_cast<int>(model.numerics.shape_function)];
+  const auto pass = workspace.kernels->optional->filter_velocity[static_cast<int>(model.numerics.shape_function)];
   for (int r = 1; r < model.numerics.xpic_order; ++r) {
     for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
       if (link.rigid) return;
@@ -352,7 +352,7 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
   const int shape = static_cast<int>(model.numerics.shape_function);
   const bool xpic = model.numerics.transfer == Transfer::Xpic;
   const auto update = workspace.kernels->update_particles[shape][model.numerics.affine()];
-  const auto update_xpic = workspace.kernels->update_particles_xpic[shape];
+  const auto update_xpic = workspace.kernels->optional->update_particles_xpic[shape];
   const std::int32_t count = static_cast<std::int32_t>(workspace.pencils.size());
 #pragma omp parallel num_threads(workspace.threads) if (count > 1)
   {

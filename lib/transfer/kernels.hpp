@@ -87,6 +87,15 @@ struct MoveSums {
   bool outside;                 // a particle is outside its bounds (or not a number)
 };
 
+// Kernels that few runs need, in a file of their own. By shape function; the arrays hold the records of the neighbour blocks.
+struct OptionalKernels {
+  // Sums of the stress at nodes where bodies meet.
+  void (*map_contact_stress[2])(const KernelGroup&, const KernelParticles&, ContactStress* const (&)[27]);
+  // XPIC: one pass of the filter from `filter[].v` to momentum in `filter[].f`, and the particle update.
+  void (*filter_velocity[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27]);
+  void (*update_particles_xpic[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27], MoveSums&);
+};
+
 struct KernelTable {
   const char* name;
   // Nodal mass and momentum, Eqs. (27) and (28), by shape function, without and with affine velocity.
@@ -99,11 +108,7 @@ struct KernelTable {
   void (*map_internal_force[2])(const KernelGroup&, const KernelParticles&);
   // Eqs. (33), (34) by shape function, without and with affine velocity.
   void (*update_particles[2][2])(const KernelGroup&, const KernelParticles&, MoveSums&);
-  // Sums of the stress at nodes where bodies meet; the last argument holds the records of the neighbour blocks.
-  void (*map_contact_stress[2])(const KernelGroup&, const KernelParticles&, ContactStress* const (&)[27]);
-  // XPIC: one pass of the filter from `filter[].v` to momentum in `filter[].f`, and the particle update.
-  void (*filter_velocity[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27]);
-  void (*update_particles_xpic[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27], MoveSums&);
+  const OptionalKernels* optional;
 };
 
 // The best table for this processor, or the one that the environment variable OGIVE_ISA names (x86-64-v2, x86-64-v3,

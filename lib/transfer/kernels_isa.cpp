@@ -1,7 +1,5 @@
 // The kernel table of one instruction set: the build compiles this file once for each, with OGIVE_ISA_NAMESPACE naming it.
-#include "transfer/contact_stress.hpp"
 #include "transfer/stress.hpp"
-#include "transfer/xpic.hpp"
 
 namespace ogive {
 namespace OGIVE_ISA_NAMESPACE {
@@ -15,6 +13,7 @@ namespace OGIVE_ISA_NAMESPACE {
    {update_stress<Shape, strength_johnson_cook, eos_linear>,                                                        \
     update_stress<Shape, strength_johnson_cook, eos_mie_gruneisen>}}
 
+extern const OptionalKernels optional_kernels;  // optional_kernels_isa.cpp
 extern const KernelTable table;
 const KernelTable table = {
     OGIVE_TEXT(OGIVE_ISA_NAMESPACE),
@@ -25,9 +24,7 @@ const KernelTable table = {
     {map_internal_force<LinearShape>, map_internal_force<QuadraticBSplineShape>},
     {{update_particles<LinearShape, false>, update_particles<LinearShape, true>},
      {update_particles<QuadraticBSplineShape, false>, update_particles<QuadraticBSplineShape, true>}},
-    {map_contact_stress<LinearShape>, map_contact_stress<QuadraticBSplineShape>},
-    {filter_velocity<LinearShape>, filter_velocity<QuadraticBSplineShape>},
-    {update_particles_xpic<LinearShape>, update_particles_xpic<QuadraticBSplineShape>},
+    &optional_kernels,
 };
 
 }  // namespace OGIVE_ISA_NAMESPACE
