@@ -76,7 +76,7 @@ class Finder {
 
  private:
   void collect_fields(const MixedBlock& block, ContactNode& at, BlockContacts& contacts) {
-    const double cell_volume = std::pow(model_.grid.cell_size, 3);
+    const double h = model_.grid.cell_size, cell_volume = h * h * h;
     for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) {
       const Slot& slot = workspace_.slots[s];
       const NodeRecord& record = workspace_.nodes[static_cast<std::size_t>(s) * block_nodes + at.node];

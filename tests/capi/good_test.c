@@ -417,9 +417,9 @@ static void rigid_bodies_move_as_the_host_says(void) {
   for (int i = 0; i < 10; ++i) CHECK_OK(world, ogive_world_step(world, 1e-5));
   CHECK_OK(world, ogive_body_result_get(world, small.left, &after));
   x_after = after.centre[0];
-  CHECK(fabs(x_after - x_before + 20 * 1e-4) < 1e-12 && after.velocity[0] == -20);
+  CHECK(fabs(x_after - x_before + 20 * 1e-4) < 1e-12 && fabs(after.velocity[0] + 20) < 1e-12);
   CHECK_OK(world, ogive_world_ledger(world, &ledger));
-  CHECK(fabs(ledger.residual) < 1e-12 * ledger.total);
+  CHECK(fabs(ledger.residual) < 1e-12 * ledger.kinetic);
   ogive_world_destroy(world);
 }
 
