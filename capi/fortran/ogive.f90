@@ -21,6 +21,8 @@ module ogive
     procedure :: set_numerics
     procedure :: set_contact
     procedure :: set_pair
+    procedure :: add_wall
+    procedure :: set_motion
     procedure :: set_stop
     procedure :: add_clamp
     procedure :: add_load
@@ -112,9 +114,9 @@ contains
   end subroutine set_grid
 
   subroutine set_numerics(self, shape_function, time_step_factor, maximum_time_step, threads, gravity, transfer, &
-                          update_order, pic_fraction, status)
+                          update_order, pic_fraction, xpic_order, status)
     class(ogive_simulation), intent(inout) :: self
-    integer(c_int32_t), intent(in), optional :: shape_function, threads, transfer, update_order
+    integer(c_int32_t), intent(in), optional :: shape_function, threads, transfer, update_order, xpic_order
     real(c_double), intent(in), optional :: time_step_factor, maximum_time_step, gravity(3), pic_fraction
     integer(c_int32_t), intent(out), optional :: status
     type(ogive_numerics_def) :: def
@@ -127,6 +129,7 @@ contains
     if (present(transfer)) def%transfer = transfer
     if (present(update_order)) def%update_order = update_order
     if (present(pic_fraction)) def%pic_fraction = pic_fraction
+    if (present(xpic_order)) def%xpic_order = xpic_order
     self%status = ogive_world_set_numerics(self%world, def)
     if (present(status)) status = self%status
   end subroutine set_numerics
@@ -155,18 +158,57 @@ contains
     if (present(status)) status = self%status
   end subroutine set_contact
 
-  subroutine set_pair(self, a, b, normal, master, friction, detection, gap_offset, status)
+  subroutine set_pair(self, a, b, method, normal, master, friction, detection, gap_offset, status)
     class(ogive_simulation), intent(inout) :: self
     type(ogive_body_id), intent(in) :: a, b
-    integer(c_int32_t), intent(in), optional :: normal, detection
+    integer(c_int32_t), intent(in), optional :: method, normal, detection
     type(ogive_body_id), intent(in), optional :: master
     real(c_double), intent(in), optional :: friction, gap_offset
     integer(c_int32_t), intent(out), optional :: status
     self%status = ogive_contact_set_pair(self%world, a, b, &
-                                         contact_def(normal=normal, master=master, friction=friction, &
-                                                     detection=detection, gap_offset=gap_offset))
+                                         contact_def(method, normal, master, friction, detection, gap_offset))
     if (present(status)) status = self%status
   end subroutine set_pair
+
+  subroutine add_wall(self, point, normal, method, friction, detection, gap_offset, status)
+    class(ogive_simulation), intent(inout) :: self
+    real(c_double), intent(in), optional :: point(3), normal(3), friction, gap_offset
+    integer(c_int32_t), intent(in), optional :: method, detection
+    integer(c_int32_t), intent(out), optional :: status
+    type(ogive_wall_def) :: def
+    call ogive_wall_def_init(def, c_sizeof(def))
+    if (present(point)) def%point = point
+    if (present(normal)) def%normal = normal
+    if (present(method)) def%method = method
+    if (present(friction)) def%friction = friction
+    if (present(detection)) def%detection = detection
+    if (present(gap_offset)) def%gap_offset = gap_offset
+    self%status = ogive_wall_add(self%world, def)
+    if (present(status)) status = self%status
+  end subroutine add_wall
+
+  ! times(n), velocity(3, n), angular_velocity(3, n) of a rigid body whose motion is prescribed
+  subroutine set_motion(self, body, times, velocity, angular_velocity, status)
+    class(ogive_simulation), intent(inout) :: self
+    type(ogive_body_id), intent(in) :: body
+    real(c_double), contiguous, intent(in) :: times(:), velocity(:, :)
+    real(c_double), contiguous, intent(in), optional :: angular_velocity(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    real(c_double), allocatable :: at_rest(:, :)
+    logical :: fits
+    fits = size(velocity, 1) == 3 .and. size(velocity, 2) == size(times)
+    if (fits .and. present(angular_velocity)) fits = all(shape(angular_velocity) == shape(velocity))
+    if (.not. fits) then
+      self%status = ogive_world_report(self%world, OGIVE_ERROR_ARGUMENT, &
+                                       "velocity, angular_velocity: must be (3, n), n being the size of times"//c_null_char)
+    else if (present(angular_velocity)) then
+      self%status = ogive_body_set_motion(self%world, body, size(times, kind=c_int32_t), times, velocity, angular_velocity)
+    else
+      allocate (at_rest(3, size(times)), source=0.0_c_double)
+      self%status = ogive_body_set_motion(self%world, body, size(times, kind=c_int32_t), times, velocity, at_rest)
+    end if
+    if (present(status)) status = self%status
+  end subroutine set_motion
 
   subroutine set_stop(self, body, settle_window, settle_tolerance, stop_when_stopped, stop_when_out, status)
     class(ogive_simulation), intent(inout) :: self
@@ -258,24 +300,28 @@ contains
     def%density = density
   end function material
 
-  function body_def(material, velocity, angular_velocity, angular_centre) result(def)
+  function body_def(material, velocity, angular_velocity, angular_centre, formulation) result(def)
     type(ogive_material_id), intent(in) :: material
     real(c_double), intent(in), optional :: velocity(3), angular_velocity(3), angular_centre(3)
+    integer(c_int32_t), intent(in), optional :: formulation
     type(ogive_body_def) :: def
     call ogive_body_def_init(def, c_sizeof(def))
     def%material = material
     if (present(velocity)) def%velocity = velocity
     if (present(angular_velocity)) def%angular_velocity = angular_velocity
     if (present(angular_centre)) def%angular_centre = angular_centre
+    if (present(formulation)) def%formulation = formulation
   end function body_def
 
   ! positions(3, n), volumes(n)
-  subroutine add_particles(self, name, material, positions, volumes, velocity, angular_velocity, angular_centre, body, status)
+  subroutine add_particles(self, name, material, positions, volumes, velocity, angular_velocity, angular_centre, body, &
+                           formulation, status)
     class(ogive_simulation), intent(inout) :: self
     character(len=*), intent(in) :: name
     type(ogive_material_id), intent(in) :: material
     real(c_double), contiguous, intent(in) :: positions(:, :), volumes(:)
     real(c_double), intent(in), optional :: velocity(3), angular_velocity(3), angular_centre(3)
+    integer(c_int32_t), intent(in), optional :: formulation
     type(ogive_body_id), intent(out), optional :: body
     integer(c_int32_t), intent(out), optional :: status
     type(ogive_body_id) :: id
@@ -285,7 +331,7 @@ contains
                                        "positions: must be (3, n), n being the size of volumes"//c_null_char)
     else
       self%status = ogive_body_add_particles(self%world, trim(name)//c_null_char, &
-                                             body_def(material, velocity, angular_velocity, angular_centre), &
+                                             body_def(material, velocity, angular_velocity, angular_centre, formulation), &
                                              size(volumes, kind=c_int64_t), positions, volumes, id)
     end if
     if (present(body)) body = id
@@ -293,7 +339,7 @@ contains
   end subroutine add_particles
 
   subroutine add_solid(self, name, material, solid, size, spacing, centre, axis, reference, lattice, velocity, &
-                       angular_velocity, angular_centre, body, status)
+                       angular_velocity, angular_centre, body, formulation, status)
     class(ogive_simulation), intent(inout) :: self
     character(len=*), intent(in) :: name
     type(ogive_material_id), intent(in) :: material
@@ -302,6 +348,7 @@ contains
     real(c_double), intent(in), optional :: centre(3), axis(3), reference(3)
     integer(c_int32_t), intent(in), optional :: lattice
     real(c_double), intent(in), optional :: velocity(3), angular_velocity(3), angular_centre(3)
+    integer(c_int32_t), intent(in), optional :: formulation
     type(ogive_body_id), intent(out), optional :: body
     integer(c_int32_t), intent(out), optional :: status
     type(ogive_solid_def) :: def
@@ -316,7 +363,7 @@ contains
     if (present(lattice)) def%lattice = lattice
     id%index = -1
     self%status = ogive_body_add_solid(self%world, trim(name)//c_null_char, &
-                                       body_def(material, velocity, angular_velocity, angular_centre), def, id)
+                                       body_def(material, velocity, angular_velocity, angular_centre, formulation), def, id)
     if (present(body)) body = id
     if (present(status)) status = self%status
   end subroutine add_solid

@@ -137,11 +137,39 @@ program fortran_test
   call check(all(abs(one%velocity - two%velocity) <= 0) .and. abs(one%internal - two%internal) <= 0, "the same bits")
   call a%destroy()
   call a%destroy()
+
+  ! A rigid block that the host moves, over a wall.
+  call a%create()
+  call a%set_grid(1.0_c_double, [-6.0_c_double, -4.0_c_double, -4.0_c_double], [6.0_c_double, 4.0_c_double, 4.0_c_double])
+  call a%set_numerics(maximum_time_step=1e-4_c_double, transfer=OGIVE_TRANSFER_XPIC, xpic_order=2_c_int32_t)
+  call a%add_material("steel", elastic_steel(), steel)
+  call a%add_wall(point=[0.0_c_double, 0.0_c_double, -3.5_c_double])
+  call check(a%status == OGIVE_OK, "add_wall: "//a%message())
+  call a%add_wall(normal=[0.0_c_double, 0.0_c_double, 0.0_c_double])
+  call check(a%status == OGIVE_ERROR_ARGUMENT, "a wall without direction")
+  call a%add_solid("block", steel, OGIVE_SOLID_BOX, [2.0_c_double, 2.0_c_double, 2.0_c_double], &
+                   [0.5_c_double, 0.5_c_double, 0.5_c_double], body=left, formulation=OGIVE_FORMULATION_RIGID_PRESCRIBED)
+  call a%set_motion(left, [0.0_c_double], reshape([1.0_c_double], [1, 1]))
+  call check(a%status == OGIVE_ERROR_ARGUMENT, "a motion of the wrong shape")
+  call a%prepare()
+  call check(a%status == OGIVE_OK, "prepare: "//a%message())
+  call a%set_motion(left, [0.0_c_double], reshape([0.0_c_double, 3.0_c_double, 0.0_c_double], [3, 1]))
+  call a%step(1e-4_c_double)
+  one = a%body_result(left)
+  call check(a%status == OGIVE_OK .and. abs(one%velocity(2) - 3) < 1e-12, "set_motion")
+  call a%destroy()
   call b%destroy()
   if (failures > 0) stop 1
   print "(a)", "all good"
 
 contains
+
+  function elastic_steel() result(def)
+    type(ogive_material_def) :: def
+    def = material(7.85e-3_c_double)
+    def%youngs_modulus = 200e3_c_double
+    def%poisson_ratio = 0.3_c_double
+  end function elastic_steel
 
   subroutine check(holds, what)
     logical, intent(in) :: holds
