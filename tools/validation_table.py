@@ -12,10 +12,15 @@ import tomllib
 from plot_common import Refused
 
 
+def read_rows(path):
+    """A CSV with '#' lines of sources: its rows, each {column: text}."""
+    with open(path, encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
 def read_references(path):
     """A CSV with '#' lines of sources: {first column: {column: number}}."""
-    with open(path, encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    rows = read_rows(path)
     key = next(iter(rows[0]))
     return {float(row[key]): {name: float(value) for name, value in row.items()} for row in rows}
 

@@ -231,3 +231,113 @@ TEST(Law, SimpleShearGivesTheJaumannSolution) {
   EXPECT_NEAR(s.stress.xy[0] / m.G, std::sin(2.0), 5e-4);  // first order in the step: measured 3.5e-4
   EXPECT_NEAR(s.stress.xx[0] / m.G, 1 - std::cos(2.0), 5e-4);  // measured 2.3e-4
 }
+
+TEST(Law, UniaxialStrainFollowsTheElasticLineToItsLimitAndThenTheBulkModulus) {
+  // -s_xx = (K + 4/3 G) e up to e = A / 2G, then K e + 2/3 A, e = -ln J.
+  const KernelMaterial m = aluminium();
+  LawState<V> s = at_rest(m);
+  const int steps = 1000;
+  for (int i = 1; i <= steps; ++i) {
+    strain(s, 0, 0, -0.02 / steps);
+    update_law<strength_j2_power, eos_linear>(m, s);
+    const double e = -std::log(s.volume_ratio[0]);
+    const double exact = e < m.A / (2 * m.G) ? (m.K + 4.0 / 3.0 * m.G) * e : m.K * e + 2.0 / 3.0 * m.A;
+    ASSERT_NEAR(-s.stress.xx[0] / exact, 1, 1e-5);  // measured 8e-6: the step's part of the logarithm
+  }
+}
+
+TEST(Law, UniaxialStressFollowsYoungsModulusAndThenTheTangentModulus) {
+  // s = E e, then s = A + B (e - s / E) with linear hardening; e the logarithmic strain. Sideways strain keeps s_yy at zero.
+  KernelMaterial m = aluminium();
+  m.B = 500;
+  m.n = 1;
+  const double E = 9 * m.K * m.G / (3 * m.K + m.G);
+  LawState<V> s = at_rest(m);
+  const int steps = 2000;
+  double e = 0, sideways = -0.35;
+  for (int i = 1; i <= steps; ++i) {
+    const double d = 0.05 / steps;
+    const LawState<V> before = s;
+    // Two secant steps: the law is all but linear within so small a step.
+    double last = 0, last_stress = 0;
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      s = before;
+      strain(s, 0, 0, d);
+      s.L[1][1] = s.L[2][2] = broadcast<V>(sideways * d);
+      update_law<strength_j2_power, eos_linear>(m, s);
+      const double stress = s.stress.yy[0];
+      if (std::abs(stress) < 1e-9) break;
+      const double next = attempt == 0 ? sideways - 1e-3 : sideways - stress * (sideways - last) / (stress - last_stress);
+      last = sideways;
+      last_stress = stress;
+      sideways = next;
+    }
+    e += std::log1p(d);
+    const double exact = E * e < m.A ? E * e : (m.A + m.B * e) / (1 + m.B / E);
+    ASSERT_NEAR(s.stress.yy[0], 0, 1e-6);
+    ASSERT_NEAR(s.stress.xx[0] / exact, 1, 1e-3) << e;
+  }
+}
+
+TEST(Law, CyclicShearHardensByThePlasticStrainOfAllHalfCycles) {
+  // Linear isotropic hardening: the amplitude is (A + B eps_p) / sqrt(3) with eps_p summed over all half cycles, and beyond
+  // yield the shear stress rises with the tangent modulus G B / (3 G + B). Strain without spin: no stress is turned.
+  KernelMaterial m = aluminium();
+  m.B = 800;
+  m.n = 1;
+  const double root3 = std::sqrt(3.0), amplitude = 0.02, tangent = m.G * m.B / (3 * m.G + m.B);
+  LawState<V> s = at_rest(m);
+  double yield = m.A / root3, exact = 0, direction = 1;  // of shear stress
+  for (int half_cycle = 0; half_cycle < 8; ++half_cycle, direction = -direction) {
+    const double travel = half_cycle == 0 ? amplitude : 2 * amplitude, elastic = (yield - direction * exact) / m.G;
+    exact = direction * (yield + tangent * (travel - elastic));
+    yield = std::abs(exact);
+    const int steps = 200;
+    for (int i = 0; i < steps; ++i) {
+      strain(s, 0, 1, direction * 0.5 * travel / steps);
+      s.L[1][0] = s.L[0][1];
+      update_law<strength_j2_power, eos_linear>(m, s);
+    }
+    EXPECT_NEAR(s.stress.xy[0] / exact, 1, 1e-8) << half_cycle;
+    EXPECT_NEAR(s.plastic_strain[0] / ((yield * root3 - m.A) / m.B), 1, 1e-8) << half_cycle;
+  }
+}
+
+TEST(Law, PlasticSimpleShearTurnsToTheSteadyStateOfJaumannsRate) {
+  // Without hardening the deviator (k sin f, k cos f), k = A / sqrt(3), turns by f' = g' (1 - (G / k) sin f): at last
+  // s_xx = k^2 / G. The shear is 3, by which the axes have turned by more than a right angle.
+  KernelMaterial m = aluminium();
+  m.A = 2620;  // so that the normal stress, k^2 / G, is well above round-off: 86 MPa
+  LawState<V> s = at_rest(m);
+  const double k = m.A / std::sqrt(3.0);
+  const int steps = 30000;
+  for (int i = 0; i < steps; ++i) {
+    strain(s, 0, 1, 3.0 / steps);
+    update_law<strength_j2_power, eos_linear>(m, s);
+  }
+  EXPECT_NEAR(s.stress.xx[0] / (k * k / m.G), 1, 2e-3);
+  EXPECT_NEAR(s.stress.xy[0] / (k * std::sqrt(1 - k * k / (m.G * m.G))), 1, 1e-6);
+  EXPECT_NEAR(s.volume_ratio[0], 1, 1e-12);
+}
+
+TEST(Law, AdiabaticShearHeatsAndSoftensByTheExponentialLaw) {
+  // Yield stress A (1 - T*): dT* = (beta A / rho c (Tm - Tr)) (1 - T*) d eps_p, so 1 - T* = exp(-beta A eps_p / (rho c (Tm - Tr))).
+  KernelMaterial m = aluminium();
+  m.A = 2620;
+  m.thermal = true;
+  m.thermal_exponent = 1;
+  m.room_temperature = 293;
+  m.inverse_melt_range = 1.0 / (925 - 293);
+  m.heating = 0.9 / (2.7e-3 * 875e0);
+  LawState<V> s = at_rest(m);
+  const int steps = 4000;
+  for (int i = 0; i < steps; ++i) {
+    strain(s, 0, 1, 0.5 * 1.0 / steps);
+    s.L[1][0] = s.L[0][1];
+    update_law<strength_johnson_cook, eos_linear>(m, s);
+  }
+  const double rate = m.heating * m.A * m.inverse_melt_range, cold = std::exp(-rate * s.plastic_strain[0]);
+  EXPECT_GT(s.plastic_strain[0], 0.5);
+  EXPECT_NEAR((s.temperature[0] - 293) * m.inverse_melt_range / (1 - cold), 1, 1e-3);
+  EXPECT_NEAR(s.yield_stress[0] / (m.A * cold), 1, 1e-3);
+}
