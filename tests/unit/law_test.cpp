@@ -228,7 +228,7 @@ TEST(Law, SimpleShearGivesTheJaumannSolution) {
     strain(s, 0, 1, 2.0 / steps);
     update_law<strength_elastic, eos_linear>(m, s);
   }
-  EXPECT_NEAR(s.stress.xy[0] / m.G, std::sin(2.0), 5e-4);  // first order in the step: measured 3.5e-4
+  EXPECT_NEAR(s.stress.xy[0] / m.G, std::sin(2.0), 5e-4);      // first order in the step: measured 3.5e-4
   EXPECT_NEAR(s.stress.xx[0] / m.G, 1 - std::cos(2.0), 5e-4);  // measured 2.3e-4
 }
 
@@ -247,7 +247,8 @@ TEST(Law, UniaxialStrainFollowsTheElasticLineToItsLimitAndThenTheBulkModulus) {
 }
 
 TEST(Law, UniaxialStressFollowsYoungsModulusAndThenTheTangentModulus) {
-  // s = E e, then s = A + B (e - s / E) with linear hardening; e the logarithmic strain. Sideways strain keeps s_yy at zero.
+  // s = E e, then s = A + B (e - s / E) with linear hardening; e the logarithmic strain. Sideways strain keeps s_yy at
+  // zero.
   KernelMaterial m = aluminium();
   m.B = 500;
   m.n = 1;
@@ -267,7 +268,8 @@ TEST(Law, UniaxialStressFollowsYoungsModulusAndThenTheTangentModulus) {
       update_law<strength_j2_power, eos_linear>(m, s);
       const double stress = s.stress.yy[0];
       if (std::abs(stress) < 1e-9) break;
-      const double next = attempt == 0 ? sideways - 1e-3 : sideways - stress * (sideways - last) / (stress - last_stress);
+      const double next =
+          attempt == 0 ? sideways - 1e-3 : sideways - stress * (sideways - last) / (stress - last_stress);
       last = sideways;
       last_stress = stress;
       sideways = next;
@@ -280,8 +282,9 @@ TEST(Law, UniaxialStressFollowsYoungsModulusAndThenTheTangentModulus) {
 }
 
 TEST(Law, CyclicShearHardensByThePlasticStrainOfAllHalfCycles) {
-  // Linear isotropic hardening: the amplitude is (A + B eps_p) / sqrt(3) with eps_p summed over all half cycles, and beyond
-  // yield the shear stress rises with the tangent modulus G B / (3 G + B). Strain without spin: no stress is turned.
+  // Linear isotropic hardening: the amplitude is (A + B eps_p) / sqrt(3) with eps_p summed over all half cycles, and
+  // beyond yield the shear stress rises with the tangent modulus G B / (3 G + B). Strain without spin: no stress is
+  // turned.
   KernelMaterial m = aluminium();
   m.B = 800;
   m.n = 1;
@@ -321,7 +324,8 @@ TEST(Law, PlasticSimpleShearTurnsToTheSteadyStateOfJaumannsRate) {
 }
 
 TEST(Law, AdiabaticShearHeatsAndSoftensByTheExponentialLaw) {
-  // Yield stress A (1 - T*): dT* = (beta A / rho c (Tm - Tr)) (1 - T*) d eps_p, so 1 - T* = exp(-beta A eps_p / (rho c (Tm - Tr))).
+  // Yield stress A (1 - T*): dT* = (beta A / rho c (Tm - Tr)) (1 - T*) d eps_p, so 1 - T* = exp(-beta A eps_p / (rho c
+  // (Tm - Tr))).
   KernelMaterial m = aluminium();
   m.A = 2620;
   m.thermal = true;
