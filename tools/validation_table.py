@@ -169,22 +169,20 @@ def run_cases(cases, program, engine, scene, jobs):
         raise Refused(f"{len(problems)} runs could not be made; the first: {problems[0]}")
 
 
-def replace_block(path, name, text, heading=""):
-    """Puts text between <!-- name:begin --> and <!-- name:end --> of a document; appended, under heading, if not there."""
+def replace_block(path, name, text):
+    """Puts text between <!-- name:begin --> and <!-- name:end --> of a document, which must have each of them once, in this
+    order. (Where a document has none yet, nobody but its author knows where the text belongs.)"""
     begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
-    try:
-        with open(path, encoding="utf-8") as file:
-            document = file.read()
-    except FileNotFoundError:
-        document = ""
-    if begin not in document:
-        document += f"{heading}\n{begin}\n{end}\n"
-    before, rest = document.split(begin, 1)
+    with open(path, encoding="utf-8") as file:
+        document = file.read()
+    for mark in (begin, end):
+        if document.count(mark) != 1:
+            raise Refused(f"{path}: {mark} must be there once, got {document.count(mark)}")
+    before, rest = document.split(begin)
     if end not in rest:
-        raise Refused(f"{path}: {begin} without {end}")
-    _, after = rest.split(end, 1)
+        raise Refused(f"{path}: {end} must come after {begin}")
     with open(path, "w", encoding="utf-8") as file:
-        file.write(f"{before}{begin}\n{text.strip()}\n{end}{after}")
+        file.write(f"{before}{begin}\n{text.strip()}\n{end}{rest.split(end)[1]}")
 
 
 def markdown_table(heading, rows):
