@@ -34,7 +34,8 @@ void update_stress(const Model& model, State& state, Workspace& workspace, doubl
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
 void map_external_force(const Model& model, State& state, Workspace& workspace);
 void measure_external_force(const Model& model, State& state, Workspace& workspace, double dt);
-void trial_velocities(const Model& model, State& state, Workspace& workspace, double dt);
+void trial_velocities(const Model& model, Workspace& workspace, double dt);
+void book_gravity(const Model& model, State& state, const Workspace& workspace, double dt);
 void accelerations(State& state, Workspace& workspace, double dt);
 void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt);
 
@@ -71,7 +72,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   }
   map_external_force(model, state, workspace);                   // loads of the host
   fold_force(state, workspace, dt);
-  trial_velocities(model, state, workspace, dt);                 // (32), (11) or (26)
+  trial_velocities(model, workspace, dt);                        // (32), (11) or (26)
   accelerate_rigid(model, state, workspace, dt);
   set_rigid_velocities(model, workspace, true);
   if (contact) return_start(workspace);                          // the jump of (25) belongs to the increment (34)
@@ -80,6 +81,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   if (contact) end_contact(model, state, workspace, dt);         // (12)-(22), (14)
   apply_clamps(state, workspace);
   apply_driven_velocities(model, state, workspace, dt);
+  book_gravity(model, state, workspace, dt);
   unfold_motion(state, workspace);
   if (contact) book_kept_start(state, workspace);
   if (xpic) filtered_velocities(workspace);
@@ -321,9 +323,8 @@ void measure_external_force(const Model& model, State& state, Workspace& workspa
 }
 
 // Node records become {velocity, mass | trial velocity}.
-void trial_velocities(const Model& model, State& state, Workspace& workspace, double dt) {
+void trial_velocities(const Model& model, Workspace& workspace, double dt) {
   const Vector3 g = model.numerics.gravity;
-  const bool heavy = g[0] != 0 || g[1] != 0 || g[2] != 0;
   for_nodes(workspace, [&](NodeRecord& node) {
     if (!(node.v[3] > 0)) {
       for (double& c : node.f) c = 0;
@@ -332,7 +333,12 @@ void trial_velocities(const Model& model, State& state, Workspace& workspace, do
     const double factor = dt / node.v[3];
     for (int c = 0; c < 3; ++c) node.f[c] = node.v[c] + node.f[c] * factor + g[c] * dt;
   });
-  if (!heavy) return;
+}
+
+// Work at the mean of the velocities at the beginning and the end, as that of the loads (loads/loads.hpp).
+void book_gravity(const Model& model, State& state, const Workspace& workspace, double dt) {
+  const Vector3 g = model.numerics.gravity;
+  if (g == Vector3{}) return;
   for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
     if (workspace.slots[s].rigid >= 0) continue;
     for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {

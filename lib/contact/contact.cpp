@@ -328,11 +328,10 @@ Vector3 impulse_on_a(const ContactPair& pair) {
   return minus(pair.tangential_impulse, times(pair.normal_impulse, pair.normal));
 }
 
-// Impulses of the fields, and the energy: an impulse does the work of the mean of the relative velocities before and after.
-void sum_up(BlockContacts& contacts, ContactNode& node, const std::vector<RigidMotion>& rigid) {
+void sum_up(BlockContacts& contacts, ContactNode& node) {
   ContactField* fields = contacts.fields.data() + node.first_field;
   for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
-    ContactPair& pair = contacts.pairs[p];
+    const ContactPair& pair = contacts.pairs[p];
     if (pair.constraint.hold == Hold::Nothing) continue;
     ContactField &a = fields[pair.a], &b = fields[pair.b];
     const Vector3 impulse = impulse_on_a(pair);
@@ -341,11 +340,26 @@ void sum_up(BlockContacts& contacts, ContactNode& node, const std::vector<RigidM
     const Vector3 couple = cross(pair.beside, impulse);
     add(a.couple, couple);
     add(b.couple, times(-1, couple));
-    const Vector3 mean = times(0.5, plus(pair.found, relative_velocity(a, b, pair, rigid)));
+  }
+}
+
+// The work of a pair's impulses, which is their part in the change of kinetic energy. A deformable field goes from v to v' in the
+// step by all forces together, m (v' - v) . (v + v') / 2, of which an impulse has the part of its size: its work is done at the
+// mean of v and v'. (With the trial velocity in place of v, the force of every step would first make the slip that friction
+// takes back: a contact that sticks would heat.) v is what the particles have, without what the first phase kept from them.
+// Forces on a rigid body act one after the other, contact last: its mean is that of the velocities before and after contact.
+void measure_work(BlockContacts& contacts, const ContactNode& node, const std::vector<RigidMotion>& rigid) {
+  const ContactField* fields = contacts.fields.data() + node.first_field;
+  for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+    ContactPair& pair = contacts.pairs[p];
+    if (pair.constraint.hold == Hold::Nothing) continue;
+    const ContactField &a = fields[pair.a], &b = fields[pair.b];
+    Vector3 mean = times(0.5, plus(pair.found, relative_velocity(a, b, pair, rigid)));
+    add(mean, minus(a.behind, b.behind));
     const double tangential_work = dot(pair.tangential_impulse, mean);
     const bool heat = pair.constraint.hold != Hold::Stick;
     pair.friction_dissipation = heat ? -tangential_work : 0;
-    pair.contact_work = (heat ? 0 : tangential_work) - pair.normal_impulse * dot(pair.normal, mean);
+    pair.contact_work = (heat ? 0 : tangential_work) - (pair.normal_impulse + pair.start_push) * dot(pair.normal, mean);
     contacts.friction_dissipation += pair.friction_dissipation;
     contacts.contact_work += pair.contact_work;
   }
@@ -384,7 +398,7 @@ class CoupledNodes {
                        [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(node->place); });
       if (worst <= coupled_tolerance * scale) break;
     }
-    for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node, rigid_);
+    for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node);
   }
 
  private:
@@ -455,7 +469,6 @@ void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Ph
   bool any_free = false;
   for (const RigidMotion& body : rigid) any_free = any_free || !body.prescribed;
   for_blocks(workspace, [&](BlockContacts& contacts) {
-    contacts.friction_dissipation = contacts.contact_work = 0;
     for (ContactNode& node : contacts.nodes) {
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         ContactField& field = contacts.fields[f];
@@ -475,7 +488,7 @@ void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Ph
       decide(contacts, node, rigid, phase);
       if (node.coupled) continue;
       solve_node(contacts, node, rigid);
-      sum_up(contacts, node, rigid);
+      sum_up(contacts, node);
     }
   });
   if (any_free) CoupledNodes(workspace, rigid).solve();
@@ -669,7 +682,6 @@ void start_contact(State& state, Workspace& workspace, double dt, StartUse use) 
       }
   book_impulses(state, workspace, dt);
   book_pairs(state, workspace, dt, false);
-  book_energies(state, workspace);
 }
 
 void return_start(Workspace& workspace) {
@@ -688,13 +700,21 @@ void return_start(Workspace& workspace) {
 void end_contact(const Model& model, State& state, Workspace& workspace, double dt) {
   solve_phase(workspace, workspace.rigid, {true, StartUse::MotionAndStrain, dt});
   for_blocks(workspace, [&](BlockContacts& contacts) {
-    for (const ContactNode& node : contacts.nodes)
+    contacts.friction_dissipation = contacts.contact_work = 0;
+    for (const ContactNode& node : contacts.nodes) {
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
-        const ContactField& field = contacts.fields[f];
+        ContactField& field = contacts.fields[f];
+        field.behind = {};
         if (field.slot < 0) continue;
+        const double* start = velocity_record(workspace, field, node, false);
         double* trial = velocity_record(workspace, field, node, true);
-        for (int c = 0; c < 3; ++c) trial[c] = field.velocity[c];
+        for (int c = 0; c < 3; ++c) {
+          if (field.rigid < 0) field.behind[c] = 0.5 * (start[c] - field.before[c]) + field.kept[c];
+          trial[c] = field.velocity[c];
+        }
       }
+      measure_work(contacts, node, workspace.rigid);
+    }
   });
   book_impulses(state, workspace, dt);
   book_contact_forces(model, state, workspace);

@@ -43,6 +43,7 @@ struct ContactField {
   Vector3 before{}, velocity{}, change{};  // in this phase: as found, now, and the momentum from one sweep
   Vector3 returned{};  // velocity that the first phase took and that goes back before the increment of the particles
   Vector3 kept{}, kept_couple{};  // likewise, but it never reaches the particles
+  Vector3 behind{};    // mean velocity of the step that the work of impulses is done at, less that of before and velocity
   Vector3 impulse{}, couple{};  // on it in this phase; the couple of impulses that act beside the node, on rigid bodies
 };
 
