@@ -375,7 +375,8 @@ enum {
   OGIVE_CONTACT_HU_CHEN = 4,      /* Hu, Chen 2003: common normal velocity, own tangential velocities; no friction */
   OGIVE_CONTACT_BARDENHAGEN_2000 = 5, /* Bardenhagen, Brackbill, Sulsky 2000: both bodies approach by their own normals */
   OGIVE_CONTACT_BARDENHAGEN_2001 = 6, /* Bardenhagen et al. 2001: and are released once the normal traction pulls */
-  OGIVE_CONTACT_PAN_2008 = 7      /* Pan et al. 2008: equal normal accelerations, while the force pushes */
+  OGIVE_CONTACT_PAN_2008 = 7,     /* Pan et al. 2008: equal normal accelerations, while the force pushes */
+  OGIVE_CONTACT_PERSISTENT = 8    /* Huang's second with Pan's persistence in the strain too: keeps energy */
 };
 enum {
   OGIVE_NORMAL_MASTER = 0, /* the master body's mass gradient, Eq. (9) and choices 1, 2 of section 2.3 */
@@ -392,7 +393,7 @@ enum {
 /* A rule of contact. */
 typedef struct ogive_contact_def {
   uint32_t struct_size;
-  int32_t method;       /* OGIVE_CONTACT_*. Default second. single_field as the rule of a pair among others holds the
+  int32_t method;       /* OGIVE_CONTACT_*. Default persistent. single_field as the rule of a pair among others holds the
                            pair without slip and separation at every node that both reach */
   int32_t normal;       /* OGIVE_NORMAL_*. Default average */
   ogive_body_id master; /* with OGIVE_NORMAL_MASTER. In ogive_world_set_contact -1 means: the first body of each pair */

@@ -34,7 +34,8 @@ enum class ContactMethod : std::int32_t {
   HuChen = 4,
   Bardenhagen2000 = 5,
   Bardenhagen2001 = 6,
-  Pan2008 = 7
+  Pan2008 = 7,
+  Persistent = 8
 };
 enum class NormalRule : std::int32_t {
   Master = 0,
@@ -146,7 +147,7 @@ struct Body {
 };
 
 struct ContactRule {
-  ContactMethod method = ContactMethod::HuangSecond;
+  ContactMethod method = ContactMethod::Persistent;
   NormalRule normal = NormalRule::Average;
   std::int32_t master = -1;
   double friction = 0;

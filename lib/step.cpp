@@ -356,7 +356,8 @@ void book_gravity(const Model& model, State& state, const Workspace& workspace, 
 //
 // Transfer dissipation. The grid gains sum m_I v_I . dv_I. With FLIP that is what the particles gain, sum m_p v_p . dv_p. With
 // affine velocities the rest goes into theirs, m h^2/4 C_p : dC_p, dC_p being the affine part of the increments; but C_p is
-// made anew from the grid, so that of m h^2/8 (|C_p|^2 + 2 C_p : dC_p + |dC_p|^2) only the energy of the new C_p remains.
+// made anew from the grid, so that of m h^2/8 (|C_p|^2 + 2 C_p : dC_p + |dC_p|^2) only the energy of the new C_p remains. The
+// loss is taken at the time of the stress, half a step before that of the velocities (docs/theory.md, section 10).
 // The first sum is booked here, those over particles in the next phase.
 void accelerations(State& state, Workspace& workspace, double dt) {
   const double inverse = 1.0 / dt;

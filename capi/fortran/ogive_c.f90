@@ -64,6 +64,7 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_CONTACT_BARDENHAGEN_2000 = 5
   integer(c_int32_t), parameter :: OGIVE_CONTACT_BARDENHAGEN_2001 = 6
   integer(c_int32_t), parameter :: OGIVE_CONTACT_PAN_2008 = 7
+  integer(c_int32_t), parameter :: OGIVE_CONTACT_PERSISTENT = 8
   integer(c_int32_t), parameter :: OGIVE_NORMAL_MASTER = 0
   integer(c_int32_t), parameter :: OGIVE_NORMAL_AVERAGE = 1
   integer(c_int32_t), parameter :: OGIVE_NORMAL_VOLUME_GRADIENT = 2

@@ -714,6 +714,8 @@ void end_contact(const Model& model, State& state, Workspace& workspace, double 
         }
       }
       measure_work(contacts, node, workspace.rigid);
+      for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p)
+        contacts.pairs[p].pressed = contacts.pairs[p].method->remembers && contacts.pairs[p].normal_impulse > 0;
     }
   });
   book_impulses(state, workspace, dt);
@@ -727,7 +729,7 @@ void end_contact(const Model& model, State& state, Workspace& workspace, double 
         for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
           const BlockContacts& contacts = workspace.block_contacts[i];
           const ContactPair& pair = contacts.pairs[p];
-          if (pair.method->remembers && pair.normal_impulse > 0)
+          if (pair.pressed)
             remember(state.contact_memory, node.index, contacts.fields[node.first_field + pair.a].body,
                      contacts.fields[node.first_field + pair.b].body);
         }

@@ -13,7 +13,7 @@ struct PairView {
   Vector3 own_normal[2];      // out of a and out of b, each from its own gradient; zero where there is none
   Vector3 mapped, adjusted;   // v_a - v_b before and after the first phase (where the method has one)
   Vector3 now;                // v_a - v_b as this phase finds it
-  bool pressed;               // the pair's impulse at this node pushed in the last step; only where `remembers`
+  bool pressed;               // the pair's impulse at this node pushed when it was last found; only where `remembers`
   double normal_stress;       // n . sigma . n of both bodies together, tension positive; only where `needs_stress`
 };
 
@@ -41,7 +41,8 @@ struct ContactMethodDef {
   METHOD(hu_chen)                     \
   METHOD(bardenhagen_2000)            \
   METHOD(bardenhagen_2001)            \
-  METHOD(pan_2008)
+  METHOD(pan_2008)                    \
+  METHOD(persistent)
 
 int contact_method_count();
 const ContactMethodDef& contact_method(ContactMethod method);

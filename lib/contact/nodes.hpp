@@ -55,7 +55,7 @@ struct ContactPair {
   bool strains = true;          // one of the bodies deforms
   double gap = 0;               // length > 0 that two bodies that do not deform may still approach
   double friction = 0;
-  bool pressed = false;         // its normal impulse pushed in the last step
+  bool pressed = false;         // its normal impulse pushed in the last step; after the second phase, in this one
   Vector3 mapped{}, adjusted{}; // v_a - v_b before and after the first phase of this step
   double start_push = 0;        // normal impulse of the first phase, where it reaches the particles: it bears friction too
   // In the present phase.

@@ -400,7 +400,6 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
   const double from_grid = group.grid_velocity_fraction, kept = 1.0 - from_grid;
   IntVec<4> all_inside = low <= high;
   Lanes speed_squared{};
-  const double time_step_squared = group.time_step * group.time_step;
   Record power{}, lost{}, lost_affine{};
   Weights weights[stretch / lane_count];
   for (std::int64_t start = group.begin; start < group.end; start += stretch) {
@@ -421,8 +420,8 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
           const Record dX = second_of(dx), dY = second_of(dy), dZ = second_of(dz);
           double* C = particles.affine + 9 * (p + lane);
           const Record X_0 = load_three(C), Y_0 = load_three(C + 3), Z_0 = load_three(C + 6);
-          lost_affine += (X_0 * X_0 + Y_0 * Y_0 + Z_0 * Z_0 - X * X - Y * Y - Z * Z +
-                          (dX * dX + dY * dY + dZ * dZ) * time_step_squared) *
+          lost_affine += ((X_0 - X) * (X_0 + X - dX * group.time_step) + (Y_0 - Y) * (Y_0 + Y - dY * group.time_step) +
+                          (Z_0 - Z) * (Z_0 + Z - dZ * group.time_step)) *
                          position[3];
           store_three(C, X);
           store_three(C + 3, Y);
@@ -448,7 +447,7 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
           const Record flip = v[lane];
           v[lane] = flip * kept + velocity * from_grid;
           v[lane][3] = 1.0;
-          lost += (flip - v[lane]) * (flip + v[lane]) * position[3];
+          lost += (flip - v[lane]) * (flip + v[lane] - increment) * position[3];
         }
         store_aligned(to, v[lane]);
       }

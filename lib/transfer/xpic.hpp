@@ -82,7 +82,7 @@ void update_particles_xpic(const KernelGroup& group, const KernelParticles& part
         v[lane] = gather_value<Shape>(weights[i / lane_count], lane, star) + increment;
         power += old * increment * position[3];
         v[lane][3] = 1.0;
-        lost += (flip - v[lane]) * (flip + v[lane]) * position[3];
+        lost += (flip - v[lane]) * (flip + v[lane] - increment) * position[3];
         store_aligned(to, v[lane]);
       }
       transpose(v[0], v[1], v[2], v[3]);

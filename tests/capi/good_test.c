@@ -375,7 +375,7 @@ static void rigid_bodies_move_as_the_host_says(void) {
   double forces[3 * 64], mass = 0, x_before = 0, x_after = 0;
   ogive_body_result before = {.struct_size = sizeof before}, after = {.struct_size = sizeof after};
   ogive_ledger ledger = {.struct_size = sizeof ledger};
-  CHECK(ogive_contact_method_count() == OGIVE_CONTACT_PAN_2008 + 1);
+  CHECK(ogive_contact_method_count() == OGIVE_CONTACT_PERSISTENT + 1);
   CHECK(strcmp(ogive_contact_method_name(OGIVE_CONTACT_HUANG_SECOND), "huang_second") == 0);
   CHECK(ogive_contact_normal_count() == OGIVE_NORMAL_LOGISTIC_REGRESSION + 1);
   CHECK(strcmp(ogive_contact_normal_name(OGIVE_NORMAL_AVERAGE), "average") == 0);

@@ -151,9 +151,9 @@ TEST(ContactNode, AChainOfThreeKeepsMomentumDoesNotInterpenetrateAndGainsNoEnerg
 
 TEST(ContactMethod, EachIsFoundByItsNameAndPlace) {
   const char* const names[] = {"single_field", "huang_first",      "huang_second",     "york",
-                               "hu_chen",      "bardenhagen_2000", "bardenhagen_2001", "pan_2008"};
-  ASSERT_EQ(contact_method_count(), 8);
-  for (int i = 0; i < 8; ++i) EXPECT_STREQ(contact_method(static_cast<ContactMethod>(i)).name, names[i]);
+                               "hu_chen",      "bardenhagen_2000", "bardenhagen_2001", "pan_2008", "persistent"};
+  ASSERT_EQ(contact_method_count(), 9);
+  for (int i = 0; i < 9; ++i) EXPECT_STREQ(contact_method(static_cast<ContactMethod>(i)).name, names[i]);
 }
 
 TEST(ContactMethod, YorkSticksWhileApproachingAndLetsGoWhileDeparting) {
@@ -201,6 +201,17 @@ TEST(ContactMethod, PanPersistsWhileTheForcePushes) {
   EXPECT_EQ(held.hold, Hold::Contact);
   EXPECT_EQ(held.target, -1);  // equal normal accelerations: the departure goes on as it was
   EXPECT_EQ(method.at_start(parting).hold, Hold::Nothing);
+}
+
+TEST(ContactMethod, PersistentShowsTheStrainOneNormalVelocityWhilePressedAndOnlyPushes) {
+  const ContactMethodDef& method = contact_method(ContactMethod::Persistent);
+  PairView parting = view({-1, 0, 0});
+  EXPECT_EQ(method.at_start(parting).hold, Hold::Contact);
+  parting.pressed = true;
+  EXPECT_EQ(method.at_start(parting).hold, Hold::Slide);
+  EXPECT_EQ(method.at_end(parting).hold, Hold::Contact);
+  EXPECT_EQ(method.at_end(parting).target, 0);
+  EXPECT_FALSE(method.start_reaches_particles);
 }
 
 TEST(ContactNormal, AverageWeighsUnitNormalsAndTheVolumeGradientWeighsVolumes) {

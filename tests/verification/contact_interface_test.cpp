@@ -27,8 +27,8 @@ struct Setting {
 
 TEST(ContactInterface, RefusesWhatIsNoMethodRuleWallOrMotion) {
   Setting s;
-  ogive_contact_def contact = Scene::contact_def(8);
-  EXPECT_EQ(s.refusal(ogive_world_set_contact(s.scene.get(), &contact)), "contact method: must be 0..7, got 8");
+  ogive_contact_def contact = Scene::contact_def(9);
+  EXPECT_EQ(s.refusal(ogive_world_set_contact(s.scene.get(), &contact)), "contact method: must be 0..8, got 9");
   contact = Scene::contact_def(OGIVE_CONTACT_YORK, OGIVE_DETECTION_GAP, 0, 5);
   EXPECT_EQ(s.refusal(ogive_world_set_contact(s.scene.get(), &contact)), "contact normal: must be 0..4, got 5");
   ogive_wall_def wall;

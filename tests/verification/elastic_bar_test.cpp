@@ -10,7 +10,10 @@ struct Scheme {
   std::int32_t shape;
   std::int32_t transfer;
   double factor;
-  double energy_tolerance;
+  std::int32_t method;
+  double energy_tolerance;   // of the internal energy at the transit time
+  double rebound_tolerance;
+  double drift;              // of the total energy
 };
 
 class ElasticBar : public testing::TestWithParam<Scheme> {};
@@ -21,7 +24,7 @@ TEST_P(ElasticBar, OnAnEqualBarIsStressedForTwoTransitTimesAndRebounds) {
   Scene scene;
   scene.grid(1, {-115, -4, -4}, {115, 4, 4})
       .numerics(GetParam().shape, GetParam().factor, {}, 1, GetParam().transfer)
-      .contact(OGIVE_CONTACT_HUANG_SECOND, OGIVE_DETECTION_SHARED_NODE);
+      .contact(GetParam().method, OGIVE_DETECTION_SHARED_NODE);
   const ogive_material_id material = scene.material("steel", elastic(7.85e-3, 200e3, 0));
   const ogive_body_id left = scene.box("left", material, {-length, -2, -2}, {0, 2, 2}, 0.5, {1, 0, 0});
   const ogive_body_id right = scene.box("right", material, {0, -2, -2}, {length, 2, 2}, 0.5, {-1, 0, 0});
@@ -40,8 +43,10 @@ TEST_P(ElasticBar, OnAnEqualBarIsStressedForTwoTransitTimesAndRebounds) {
   measured("spread_of_stress", spread);
   measured("internal_over_kinetic", scene.ledger().internal / scene.ledger().initial_total);
   EXPECT_NEAR(stress, 39.62, 0.01 * 39.62);  // measured 39.87 linear, 39.51 B-spline
-  // At the transit time all kinetic energy has become elastic, but for what affine velocities have taken.
-  EXPECT_NEAR((scene.ledger().internal + scene.ledger().transfer_dissipation) / scene.ledger().initial_total, 1, 0.01);
+  // At the transit time all kinetic energy has become elastic, but for what rings between the waves' fronts and grid. A method
+  // that gains energy hides that part.
+  EXPECT_NEAR((scene.ledger().internal + scene.ledger().transfer_dissipation) / scene.ledger().initial_total, 1,
+              GetParam().energy_tolerance);
   EXPECT_NEAR(scene.ledger().internal / scene.ledger().initial_total, 1, GetParam().energy_tolerance);
 
   // Contact lasts until the impulse is complete: the time by which the total impulse over the plateau's force.
@@ -56,15 +61,22 @@ TEST_P(ElasticBar, OnAnEqualBarIsStressedForTwoTransitTimesAndRebounds) {
   measured("rebound_speed", rebound);
   measured("energy_drift", scene.ledger().residual_relative);
   EXPECT_NEAR(1e3 * last_contact, 39.62, 0.02 * 39.62);  // measured 39.30 in both
-  EXPECT_NEAR(rebound, -1, 0.02);  // measured -0.989 linear, -1.001 B-spline
-  EXPECT_NEAR(scene.result(right).velocity[0], 1, 0.02);
-  EXPECT_LE(std::abs(scene.ledger().residual_relative), 0.06);  // measured 0.014 linear, 0.046 B-spline
+  EXPECT_NEAR(rebound, -1, GetParam().rebound_tolerance);
+  EXPECT_NEAR(scene.result(right).velocity[0], 1, GetParam().rebound_tolerance);
+  EXPECT_LE(std::abs(scene.ledger().residual_relative), GetParam().drift);
 }
 
-// Internal energy measured 1.002, 1.002, 0.989.
+// Measured: internal energy 1.002, 1.002, 0.989, 0.989, 0.985, 0.985; rebound -0.989, -1.001, -0.985, -0.980, -0.976, -0.980; drift of
+// the total energy +0.014, +0.046, +0.008, +0.0007, -0.0009, -0.0004.
+constexpr std::int32_t second = OGIVE_CONTACT_HUANG_SECOND, persistent = OGIVE_CONTACT_PERSISTENT;
 INSTANTIATE_TEST_SUITE_P(
     Contact, ElasticBar,
-    testing::Values(Scheme{"Linear", OGIVE_SHAPE_LINEAR, OGIVE_TRANSFER_FLIP, 0.8, 0.01},
-                    Scheme{"BSpline", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_FLIP, 0.8, 0.01},
-                    Scheme{"BSplineAffine", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_AFFINE_FLIP, 0.5, 0.015}),
+    testing::Values(
+        Scheme{"LinearSecond", OGIVE_SHAPE_LINEAR, OGIVE_TRANSFER_FLIP, 0.8, second, 0.01, 0.02, 0.06},
+        Scheme{"BSplineSecond", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_FLIP, 0.8, second, 0.01, 0.02, 0.06},
+        Scheme{"BSplineAffineSecond", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_AFFINE_FLIP, 0.5, second, 0.015, 0.02, 0.06},
+        Scheme{"LinearPersistent", OGIVE_SHAPE_LINEAR, OGIVE_TRANSFER_FLIP, 0.8, persistent, 0.018, 0.03, 0.002},
+        Scheme{"BSplinePersistent", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_FLIP, 0.8, persistent, 0.018, 0.03, 0.002},
+        Scheme{"BSplineAffinePersistent", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_AFFINE_FLIP, 0.5, persistent, 0.018,
+               0.03, 0.002}),
     [](const auto& info) { return info.param.name; });

@@ -250,11 +250,15 @@ TEST(Wall, TurnsAnElasticBlockBackAndBooksItsImpulse) {
     scene.advance(0.06);
     EXPECT_LE(momentum_miss(before, scene.ledger()), 1e-12 * before.mass * 20);
     measured(wall ? "residual_wall" : "residual_mirror", scene.ledger().residual_relative);
+    // Measured +0.0015 trilinear, +0.0010 B-spline; the other methods -0.20 to +0.23.
+    if (wall && method == OGIVE_CONTACT_PERSISTENT) {
+      EXPECT_LE(std::abs(scene.ledger().residual_relative), 0.004);
+    }
     return scene.result({0}).velocity[2];
   };
   for (const std::int32_t shape : {OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE}) {
     for (const std::int32_t method : {OGIVE_CONTACT_HUANG_FIRST, OGIVE_CONTACT_HUANG_SECOND, OGIVE_CONTACT_YORK,
-                                      OGIVE_CONTACT_BARDENHAGEN_2000, OGIVE_CONTACT_PAN_2008}) {
+                                      OGIVE_CONTACT_BARDENHAGEN_2000, OGIVE_CONTACT_PAN_2008, OGIVE_CONTACT_PERSISTENT}) {
       const double speed = thrown(true, shape, method);
       measured(std::string("wall_") + ogive_contact_method_name(method), speed);
       EXPECT_GT(speed, 12.5);  // measured 16.9 .. 18.3 trilinear with FLIP, 13.0 .. 17.7 B-spline with affine FLIP
