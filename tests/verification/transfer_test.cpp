@@ -144,8 +144,7 @@ TEST_P(Damping, OfARingingBlockIsBookedAsItIs) {
   std::vector<double> v = scene.field(block, "position");
   for (double& c : v) c *= 5;
   scene.check(ogive_field_set(scene.get(), block, "velocity", v.data(), static_cast<std::int64_t>(v.size())));
-  scene.steps(1);
-  const ogive_ledger before = scene.ledger();
+  const ogive_ledger before = scene.ledger();  // no stress yet, so that velocities may belong to any time
   scene.steps(600);
   const ogive_ledger after = scene.ledger();
   const double energy = before.kinetic + before.internal, lost = energy - after.kinetic - after.internal,
@@ -153,7 +152,7 @@ TEST_P(Damping, OfARingingBlockIsBookedAsItIs) {
   measured("lost", lost / energy);
   measured("booked_of_lost", booked / lost);
   EXPECT_GT(lost, 0.05 * energy);
-  EXPECT_NEAR(booked, lost, 0.05 * lost);
+  EXPECT_NEAR(booked, lost, 0.003 * lost);  // measured within 0.0005
 }
 
 INSTANTIATE_TEST_SUITE_P(
