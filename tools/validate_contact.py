@@ -190,6 +190,8 @@ class Rings(Scene):
         return [Asked(default, "default method and settings at 0.25: rings whole, energy changes by less than 2 %",
                       lambda m: m["whole"] == "yes" and energy(m["energy"])),
                 Asked(default, "the same: last contact at 3.4 to 3.6 ms", lambda m: last(m["last_contact"]), gate=False),
+                Asked(default, "the same: last contact as finite elements have it, 3.0 to 3.25 ms",
+                      lambda m: within(self.name, "last_contact_elements")(m["last_contact"])),
                 Asked(trilinear, "trilinear functions with the gap criterion: whole, below 2 %, last contact at 3.4 to 3.6 ms",
                       lambda m: m["whole"] == "yes" and energy(m["energy"]) and last(m["last_contact"]))]
 
@@ -296,7 +298,7 @@ class RollingCylinder(Rolling):
 
     def checks(self, rows):
         default = chosen(rows, settings="recommended", method=DEFAULT, cell=0.2)
-        return [Asked(default, "default method, 0.2 m: error of 4 % at most",
+        return [Asked(default, "default method, 0.2 m: error of 6 % at most",
                       lambda m: within(self.name, "error")(m["error"]))]
 
 
