@@ -66,12 +66,16 @@ struct Block {
     model.numerics.transfer = transfer;
     model.numerics.maximum_time_step = 1e-6;
     model.materials = {material_of(law, mie_gruneisen)};
-    model.bodies = {{"block", 0}};
-    model.validate_all();
+    model.bodies.resize(1);
+    model.bodies[0].name = "block";
+    model.bodies[0].material = 0;
+    model.validate_grid();
+    model.validate_numerics();
+    model.complete();
     state.bodies.resize(1);
     BodyState& body = state.bodies[0];
     body.particles = static_cast<std::int64_t>(edge) * edge * edge;
-    allocate_particles(model.materials[0], body.particles, body);
+    allocate_particles(model.materials[0], false, body.particles, body);
     std::int64_t p = 0;
     for (int k = 0; k < edge; ++k)
       for (int j = 0; j < edge; ++j)
@@ -186,8 +190,9 @@ int main(int argc, char** argv) {
           ->Unit(benchmark::kMillisecond);
     }
   };
-  for (const ShapeFunction shape : {ShapeFunction::Linear, ShapeFunction::QuadraticBSpline}) {
-    const std::string of = shape == ShapeFunction::Linear ? "/linear" : "/bspline";
+  const char* const shape_names[] = {"/linear", "/bspline", "/gimp"};
+  for (const ShapeFunction shape : {ShapeFunction::Linear, ShapeFunction::QuadraticBSpline, ShapeFunction::Gimp}) {
+    const std::string of = shape_names[static_cast<int>(shape)];
     for (const Transfer transfer : {Transfer::Flip, Transfer::AffineFlip}) {
       const std::string by = transfer == Transfer::Flip ? "/flip" : "/affine";
       add("map_momentum" + of + by, [=](benchmark::State& b, int edge) { map_momentum(b, shape, transfer, edge); });

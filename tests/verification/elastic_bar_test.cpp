@@ -66,5 +66,6 @@ INSTANTIATE_TEST_SUITE_P(
     Contact, ElasticBar,
     testing::Values(Scheme{"Linear", OGIVE_SHAPE_LINEAR, OGIVE_TRANSFER_FLIP, 0.8, 0.01},
                     Scheme{"BSpline", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_FLIP, 0.8, 0.01},
-                    Scheme{"BSplineAffine", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_AFFINE_FLIP, 0.5, 0.015}),
+                    Scheme{"BSplineAffine", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_AFFINE_FLIP, 0.5, 0.015},
+                    Scheme{"Gimp", OGIVE_SHAPE_GIMP, OGIVE_TRANSFER_FLIP, 0.8, 0.01}),
     [](const auto& info) { return info.param.name; });
