@@ -13,7 +13,7 @@ using Lanes = loads::Vec<4>;  // one an axis; the fourth is idle
 template <class Shape, class Visit>
 void for_particle_nodes(Workspace& workspace, const GroupLinks& link, double inverse_cell, const double* x, Visit&& visit) {
   Lanes xi{}, first, w[Shape::nodes], d[Shape::nodes];
-  for (int axis = 0; axis < 3; ++axis) xi[axis] = (x[axis] - link.corner[axis]) * inverse_cell;
+  for (int axis = 0; axis < 3; ++axis) loads::set_lane(xi, axis, (x[axis] - link.corner[axis]) * inverse_cell);
   Shape::at(xi, first, w, d);
   for (int k = 0; k < Shape::nodes; ++k)
     for (int j = 0; j < Shape::nodes; ++j)
