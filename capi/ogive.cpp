@@ -13,8 +13,10 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "archive.hpp"
@@ -46,6 +48,10 @@ struct ogive_world {
   std::map<std::string, std::vector<std::uint8_t>> attachments;
   mutable std::string message;
   mutable const char* fixed_message = nullptr;  // in place of message where there was no memory for it
+  // Sums over the particles of each body after `audited_steps` steps, made when first asked for: who asks for the ledger
+  // mostly asks for each body too. Every call that may change the world empties it.
+  mutable std::vector<std::optional<BodyAudit>> audits;
+  mutable std::int64_t audited_steps = 0;
 };
 
 namespace {
@@ -94,6 +100,22 @@ ogive_status guarded(const ogive_world* world, Work&& work) noexcept {
   } catch (...) {
     return fail(world, OGIVE_ERROR_INTERNAL, "unknown failure");
   }
+}
+
+template <class Work>
+ogive_status guarded(ogive_world* world, Work&& work) noexcept {
+  if (world) world->audits.clear();
+  return guarded(static_cast<const ogive_world*>(world), std::forward<Work>(work));
+}
+
+const BodyAudit& audit_of(const ogive_world* world, int body) {
+  if (world->audits.empty() || world->audited_steps != world->state.steps) {
+    world->audits.assign(world->state.bodies.size(), std::nullopt);
+    world->audited_steps = world->state.steps;
+  }
+  std::optional<BodyAudit>& audit = world->audits[static_cast<std::size_t>(body)];
+  if (!audit) audit = audit_body(world->model, world->state, body);
+  return *audit;
 }
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::Argument, message); }
@@ -1183,6 +1205,7 @@ static void step_or_break(ogive_world* world, double dt) {
   if (world->log)
     for (const BodyState& body : world->state.bodies) before.push_back(body.totals);
   const std::int32_t stop_before = world->state.stop.reason;
+  world->audits.clear();
   try {
     world->workspace.changing = false;
     advance_one_step(world->model, world->state, world->workspace, dt);
@@ -1261,7 +1284,7 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     ogive_ledger full{};
     full.time = state.time;
     for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
-      const BodyAudit audit = audit_body(world->model, state, b);
+      const BodyAudit& audit = audit_of(world, b);
       const BodyTotals& totals = state.bodies[b].totals;
       full.mass += audit.mass;
       full.kinetic += audit.kinetic;
@@ -1325,7 +1348,7 @@ ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id id, o
   return guarded(world, [&] {
     require_prepared(world, "ogive_body_result_get");
     const BodyState& body = body_of(world, id);
-    const BodyAudit audit = audit_body(world->model, world->state, id.index);
+    const BodyAudit& audit = audit_of(world, id.index);
     const BodyTotals& totals = body.totals;
     ogive_body_result full{};
     full.particles = body.particles;

@@ -139,8 +139,10 @@ OGIVE_API ogive_status ogive_world_set_grid(ogive_world* world, const ogive_grid
 
 /* Shape functions. */
 enum {
-  OGIVE_SHAPE_LINEAR = 0,           /* trilinear, 8 nodes */
-  OGIVE_SHAPE_QUADRATIC_BSPLINE = 1 /* quadratic B-spline, 27 nodes */
+  OGIVE_SHAPE_LINEAR = 0,            /* trilinear, 8 nodes */
+  OGIVE_SHAPE_QUADRATIC_BSPLINE = 1, /* quadratic B-spline, 27 nodes */
+  OGIVE_SHAPE_GIMP = 2              /* GIMP (Bardenhagen, Kober 2004) with particles half a cell wide along each axis, 27
+                                       nodes: between the two, smooth and narrower than the B-spline */
 };
 
 /* How velocity travels between particles and grid. */

@@ -353,6 +353,7 @@ ogive_status ogive_particles_write(ogive_world* world, const char* path) {
         const char* field_name = ogive_field_name(world, body, field, &components);
         if (std::strcmp(field_name, "affine_velocity") == 0) continue;  // of use to a restart, not to a picture
         const std::uint64_t count = particles * static_cast<std::uint64_t>(components);
+        if (values.capacity() < count) values = {};      // not beside the larger one
         values.resize(std::max<std::size_t>(count, 1));  // never a null pointer, also for a body that has left
         require(ogive_field_get(world, body, field_name, values.data(), static_cast<std::int64_t>(count)));
         if (components == 6) reorder_tensors(values);

@@ -120,7 +120,9 @@ NumericsScene read_numerics(const Section& root) {
                         "update_order", "pic_fraction", "xpic_order"});
   if (!section) return numerics;
   numerics.shape_function = section->optional_choice(
-      "shape_function", {{"linear", OGIVE_SHAPE_LINEAR}, {"quadratic_bspline", OGIVE_SHAPE_QUADRATIC_BSPLINE}});
+      "shape_function", {{"linear", OGIVE_SHAPE_LINEAR},
+                         {"quadratic_bspline", OGIVE_SHAPE_QUADRATIC_BSPLINE},
+                         {"gimp", OGIVE_SHAPE_GIMP}});
   const Range factor = {[](double value) { return value > 0 && value <= 1.5; }, "> 0 and <= 1.5"};
   numerics.time_step_factor = section->optional_number("time_step_factor", factor);
   numerics.maximum_time_step = section->optional_number("maximum_time_step", kPositive);

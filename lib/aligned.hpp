@@ -35,8 +35,8 @@ struct AlignedAllocator {
     const std::size_t boundary = boundary_of(bytes);
     void* const memory = ::operator new (bytes + page, std::align_val_t{boundary});
 #if defined(__linux__)
-    // Only advice: where it cannot be followed nothing is lost.
-    if (boundary == huge_page) (void)::madvise(memory, bytes + page, MADV_HUGEPAGE);
+    // Only advice: where it cannot be followed nothing is lost. Not for the end, which may be capacity that is never used.
+    if (boundary == huge_page) (void)::madvise(memory, (bytes + page) / huge_page * huge_page, MADV_HUGEPAGE);
 #endif
     return reinterpret_cast<T*>(static_cast<char*>(memory) + offset);
   }

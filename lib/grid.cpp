@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "audit.hpp"
 #include "error.hpp"
@@ -102,11 +103,10 @@ void book_departure(const Material& material, double cell_size, const BodyState&
 
 // Takes all the memory that reorder needs and changes no value: should there be too little, the body is as it was. Capacity
 // grows by a sixteenth, not to the double: these arrays are most of the memory.
-void reserve_for(BodyState& body, std::size_t padded, Workspace& workspace) {
+void reserve_for(BodyState& body, std::size_t padded) {
   const auto reserve = [](auto& array, std::size_t n) {
     if (array.capacity() < n) array.reserve(n + n / 16);
   };
-  reserve(workspace.scratch, 4 * padded);
   reserve(body.position, 4 * padded);
   reserve(body.velocity, 4 * padded);
   if (!body.force.empty()) reserve(body.force, 4 * padded);
@@ -116,49 +116,68 @@ void reserve_for(BodyState& body, std::size_t padded, Workspace& workspace) {
   if (!body.loads.empty()) reserve(body.loads, padded);
 }
 
+// Particles that are moved at a time.
+std::int64_t piece_of(std::int64_t padded) { return std::clamp<std::int64_t>(padded, 1, 16384); }
+
+// Length of the ring through which particles are moved, in particles. An old value is needed until the last new place that
+// takes it has been read, which is at most `reach` places later: particles that have moved by a cell between binnings lie
+// near their old places, so that the ring is a small part of the body. It holds a reach in whole pieces and the piece that
+// is read.
+std::int64_t ring_length(const AlignedVector<std::int32_t>& source) {
+  const std::int64_t padded = static_cast<std::int64_t>(source.size()), piece = piece_of(padded);
+  std::int64_t reach = 0;
+  for (std::int64_t i = 0; i < padded; ++i) reach = std::max(reach, i - source[i]);
+  return (reach / piece + 2) * piece;
+}
+
 // New order of a body's particles: `source[i]` is the old place of the particle now at i; padding repeats the last one. The
-// scratch array holds one record a particle and stays, so that no memory is asked for in a running simulation. All memory was
-// reserved before: nothing here fails.
-void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Workspace& workspace) {
+// ring holds one record for each of ring_length particles. All memory was reserved before: nothing here fails.
+void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, AlignedVector<double>& ring,
+             const Workspace& workspace) {
   const std::int64_t padded = static_cast<std::int64_t>(source.size());
   const std::size_t n = static_cast<std::size_t>(padded);
-  workspace.scratch.resize(4 * n);
-  double* const scratch = workspace.scratch.data();
-  // Sends `size` values of each particle, from the `first` of `stride` on, through the scratch array.
-  const auto part = [&](AlignedVector<double>& array, int stride, int first, int size) {
-    const double* const from = array.data() + first;
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-    for (std::int64_t i = 0; i < padded; ++i)
-      for (int c = 0; c < size; ++c) scratch[size * i + c] = from[stride * static_cast<std::int64_t>(source[i]) + c];
+  const std::int64_t length = static_cast<std::int64_t>(ring.size()) / 4, most = piece_of(padded);
+  // Sends `size` values of each particle, from the `first` of `stride` on, through the ring; a value is read before the
+  // ring's place is needed again, `length` places later.
+  const auto part = [&](auto& array, int stride, int first, int size) {
+    using Value = std::remove_reference_t<decltype(array[0])>;
     if (array.size() < stride * n) array.resize(stride * n);
-    double* const to = array.data() + first;
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-    for (std::int64_t i = 0; i < padded; ++i)
-      for (int c = 0; c < size; ++c) to[stride * i + c] = scratch[size * i + c];
+    Value* const values = array.data() + first;
+    Value* const waiting = reinterpret_cast<Value*>(ring.data());
+    std::int64_t written = 0;
+    for (std::int64_t begin = 0; begin < padded; begin += most) {
+      const std::int64_t end = std::min(begin + most, padded);
+      Value* const piece = waiting + size * (begin % length);
+#pragma omp parallel for num_threads(workspace.threads) schedule(static) if (workspace.threads > 1)
+      for (std::int64_t i = begin; i < end; ++i)
+        for (int c = 0; c < size; ++c)
+          piece[size * (i - begin) + c] = values[stride * static_cast<std::int64_t>(source[i]) + c];
+      // What lies a reach behind has been read by all that take it.
+      const std::int64_t complete = end == padded ? padded : std::max<std::int64_t>(0, end + most - length);
+      for (; written < complete; written = std::min(written + most, padded)) {
+        const std::int64_t last = std::min(written + most, padded);
+        const Value* const taken = waiting + size * (written % length);
+#pragma omp parallel for num_threads(workspace.threads) schedule(static) if (workspace.threads > 1)
+        for (std::int64_t i = written; i < last; ++i)
+          for (int c = 0; c < size; ++c) values[stride * i + c] = taken[size * (i - written) + c];
+      }
+    }
   };
-  const auto records = [&](AlignedVector<double>& array) {
+  const auto whole = [&](auto& array, int size) {
     if (array.empty()) return;
-    part(array, 4, 0, 4);
-    array.resize(4 * n);
+    part(array, size, 0, size);
+    array.resize(size * n);
   };
-  records(body.position);
-  records(body.velocity);
-  records(body.force);
+  whole(body.position, 4);
+  whole(body.velocity, 4);
+  whole(body.force, 4);
   if (!body.affine.empty()) {
     for (int vector = 0; vector < 3; ++vector) part(body.affine, affine_size, 3 * vector, 3);
     body.affine.resize(affine_size * n);
   }
-  body.for_each_scalar([&](AlignedVector<double>& array) {
-    part(array, 1, 0, 1);
-    array.resize(n);
-  });
-  std::int32_t* const integers = reinterpret_cast<std::int32_t*>(scratch);
-  for (AlignedVector<std::int32_t>* array : {&body.number, &body.loads}) {
-    if (array->empty()) continue;
-    for (std::int64_t i = 0; i < padded; ++i) integers[i] = (*array)[source[i]];
-    array->resize(n);
-    std::copy(integers, integers + n, array->begin());
-  }
+  body.for_each_scalar([&](AlignedVector<double>& array) { whole(array, 1); });
+  whole(body.number, 1);
+  whole(body.loads, 1);
 }
 
 void bin_body(const Model& model, State& state, Workspace& workspace, int index) {
@@ -245,12 +264,16 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   for (const Group& group : sorted)
     for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p)
       source[p] = source[group.begin + group.count - 1];
-  reserve_for(body, source.size(), workspace);
+  const std::int64_t particles = static_cast<std::int64_t>(place.size());
+  place = {};
+  bin = {};
+  AlignedVector<double> ring(static_cast<std::size_t>(4 * ring_length(source)));
+  reserve_for(body, source.size());
 
   // From here on nothing fails.
-  reorder(body, source, workspace);
+  reorder(body, source, ring, workspace);
   body.groups.swap(sorted);
-  body.particles = static_cast<std::int64_t>(place.size());
+  body.particles = particles;
   body.padded = next;
   body.totals = totals;
   // The padding moves like the particle that it repeats but weighs nothing.
@@ -596,7 +619,7 @@ std::int64_t Workspace::memory_bytes() const {
   std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(contact_stress) + bytes(occupied) +
                        bytes(filter) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
-                       bytes(driven) + bytes(load_sums) + bytes(scratch);
+                       bytes(driven) + bytes(load_sums);
   for (const BlockContacts& block : block_contacts) total += bytes(block.fields) + bytes(block.pairs) + bytes(block.nodes);
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
   return total;

@@ -128,7 +128,6 @@ struct Workspace {
   // Of each body's particles in this step, records; empty where the stress comes first.
   std::vector<AlignedVector<double>> displacement;
   std::vector<LoadSums> load_sums;        // of each link in turn: the loads on its body's particles, then the host's forces
-  AlignedVector<double> scratch;          // for binning: one record a particle
   // The step has begun to change the state: until then a step that fails leaves it as it was.
   bool changing = false;
 

@@ -160,7 +160,7 @@ void Model::validate_grid() const {
 }
 
 void Model::validate_numerics() const {
-  require_choice("shape_function", numerics.shape_function, 2);
+  require_choice("shape_function", numerics.shape_function, 3);
   require(numerics.time_step_factor > 0 && numerics.time_step_factor <= 1.5, "time_step_factor", "> 0 and <= 1.5",
           numerics.time_step_factor);
   require(numerics.maximum_time_step > 0, "maximum_time_step", "> 0", numerics.maximum_time_step);

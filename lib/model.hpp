@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "shape/gimp.hpp"
 #include "vector3.hpp"
 
 namespace ogive {
@@ -18,7 +19,7 @@ namespace ogive {
 class Archive;
 
 enum class Face : std::int32_t { Free = 0, Symmetry = 1, Fixed = 2 };
-enum class ShapeFunction : std::int32_t { Linear = 0, QuadraticBSpline = 1 };
+enum class ShapeFunction : std::int32_t { Linear = 0, QuadraticBSpline = 1, Gimp = 2 };
 enum class Transfer : std::int32_t { Flip = 0, AffineFlip = 1, Apic = 2, Xpic = 3 };
 // USF; MUSL, from momentum mapped once more; USL, from the velocities at the end of the step as they are.
 enum class UpdateOrder : std::int32_t { StressFirst = 0, StressLast = 1, StressLastAsIs = 2 };
@@ -68,6 +69,11 @@ struct Numerics {
 
   bool affine() const { return transfer == Transfer::AffineFlip || transfer == Transfer::Apic; }
   bool stress_first() const { return update_order == UpdateOrder::StressFirst; }
+  // How far from a node its shape function reaches along an axis, in cells.
+  double reach() const {
+    constexpr double reaches[] = {1.0, 1.5, 1.0 + gimp_half_width};
+    return reaches[static_cast<int>(shape_function)];
+  }
   // The part of a particle's new velocity that is the grid's own.
   double grid_velocity_fraction() const { return transfer == Transfer::Apic ? 1.0 : pic_fraction; }
 };

@@ -100,9 +100,10 @@ void describe_contact(std::string& text, const Model& model, const Workspace& wo
 std::string describe_plan(const Model& model, const State& state, const Workspace& workspace) {
   std::string text;
   static const char* const faces[] = {"free", "symmetry", "fixed"};
+  static const char* const shapes[] = {"trilinear", "quadratic B-spline", "GIMP"};
   line(text, "grid: cells of %.6g, %s shape functions, %zu blocks of 64 nodes where material is",
        model.grid.cell_size,
-       model.numerics.shape_function == ShapeFunction::Linear ? "trilinear" : "quadratic B-spline",
+       shapes[static_cast<int>(model.numerics.shape_function)],
        workspace.slots.size());
   static const char* const transfers[] = {"FLIP", "FLIP with affine velocity", "APIC", "XPIC"};
   static const char* const orders[] = {"first (USF)", "last (MUSL)", "last, from the velocities as they are (USL)"};

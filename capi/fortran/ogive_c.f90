@@ -26,6 +26,7 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_FACE_FIXED = 2
   integer(c_int32_t), parameter :: OGIVE_SHAPE_LINEAR = 0
   integer(c_int32_t), parameter :: OGIVE_SHAPE_QUADRATIC_BSPLINE = 1
+  integer(c_int32_t), parameter :: OGIVE_SHAPE_GIMP = 2
   integer(c_int32_t), parameter :: OGIVE_TRANSFER_FLIP = 0
   integer(c_int32_t), parameter :: OGIVE_TRANSFER_AFFINE_FLIP = 1
   integer(c_int32_t), parameter :: OGIVE_TRANSFER_APIC = 2

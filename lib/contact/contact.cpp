@@ -32,6 +32,7 @@
 #include "contact/memory.hpp"
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
+#include "shape/gimp.hpp"
 
 namespace ogive {
 namespace {
@@ -110,7 +111,7 @@ class Finder {
 
   void collect_walls(ContactNode& at, BlockContacts& contacts) {
     if (at.fields == 0) return;
-    const double reach = model_.numerics.shape_function == ShapeFunction::Linear ? 1.0 : 1.5;
+    const double reach = model_.numerics.reach();
     for (std::size_t w = 0; w < model_.walls.size(); ++w) {
       if (distance_to(model_.walls[w], at) >= reach) continue;
       ContactField field;
@@ -568,6 +569,16 @@ double surface_distance(ShapeFunction shape, double fraction) {
   // The filled part as a function of distance is the integral of the shape function beyond it, symmetric about 1/2.
   if (fraction > 0.5) return -surface_distance(shape, std::max(0.0, 1.0 - fraction));
   if (shape == ShapeFunction::Linear) return 1.0 - std::sqrt(2.0 * fraction);
+  if (shape == ShapeFunction::Gimp) {
+    constexpr double l = gimp_half_width;
+    if (fraction <= l * l * (2.0 / 3.0)) return 1.0 + l - std::cbrt(12.0 * l * fraction);
+    if (fraction <= 0.5 * (1 - l) * (1 - l) + l * l / 6) return 1.0 - std::sqrt(2.0 * fraction - l * l / 3);
+    // 1/2 - (1 - l/2) s + s^3 / (6 l) = fraction for 0 <= s <= l.
+    double s = (0.5 - fraction) / (1 - 0.5 * l);
+    for (int i = 0; i < 4; ++i)
+      s -= (0.5 - (1 - 0.5 * l) * s + s * s * s / (6 * l) - fraction) / (s * s / (2 * l) - (1 - 0.5 * l));
+    return s;
+  }
   if (fraction <= 1.0 / 6.0) return 1.5 - std::cbrt(6.0 * fraction);
   // 1/2 - 3/4 s + s^3/3 = fraction for 0 <= s <= 1/2, by Newton; s = (1/2 - fraction) 4/3 is close already.
   double s = (0.5 - fraction) * (4.0 / 3.0);

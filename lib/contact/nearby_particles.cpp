@@ -9,7 +9,7 @@ namespace ogive {
 void NearbyParticles::gather(const Model& model, const State& state, const Workspace& workspace, const MixedBlock& block) {
   const Grid& grid = model.grid;
   const double inverse = 1.0 / grid.cell_size;
-  reach = model.numerics.shape_function == ShapeFunction::Linear ? 1.0 : 1.5;
+  reach = model.numerics.reach();
   found_.clear();
   const auto near = [](const Vector3& x) {
     for (const double c : x)

@@ -13,7 +13,7 @@ using Lanes = loads::Vec<4>;  // one an axis; the fourth is idle
 template <class Shape, class Visit>
 void for_particle_nodes(Workspace& workspace, const GroupLinks& link, double inverse_cell, const double* x, Visit&& visit) {
   Lanes xi{}, first, w[Shape::nodes], d[Shape::nodes];
-  for (int axis = 0; axis < 3; ++axis) xi[axis] = (x[axis] - link.corner[axis]) * inverse_cell;
+  for (int axis = 0; axis < 3; ++axis) loads::set_lane(xi, axis, (x[axis] - link.corner[axis]) * inverse_cell);
   Shape::at(xi, first, w, d);
   for (int k = 0; k < Shape::nodes; ++k)
     for (int j = 0; j < Shape::nodes; ++j)
@@ -30,10 +30,12 @@ void for_particle_nodes(Workspace& workspace, const GroupLinks& link, double inv
 template <class Visit>
 void for_particle_nodes(const Model& model, Workspace& workspace, const GroupLinks& link, const double* x, Visit&& visit) {
   const double inverse_cell = 1.0 / model.grid.cell_size;
-  if (model.numerics.shape_function == ShapeFunction::Linear)
-    for_particle_nodes<loads::LinearShape>(workspace, link, inverse_cell, x, visit);
-  else
-    for_particle_nodes<loads::QuadraticBSplineShape>(workspace, link, inverse_cell, x, visit);
+  switch (model.numerics.shape_function) {
+    case ShapeFunction::Linear: return for_particle_nodes<loads::LinearShape>(workspace, link, inverse_cell, x, visit);
+    case ShapeFunction::QuadraticBSpline:
+      return for_particle_nodes<loads::QuadraticBSplineShape>(workspace, link, inverse_cell, x, visit);
+    case ShapeFunction::Gimp: return for_particle_nodes<loads::GimpShape>(workspace, link, inverse_cell, x, visit);
+  }
 }
 
 // Force per mass of the body's loads on particles, in the order of their bits.

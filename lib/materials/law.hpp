@@ -43,13 +43,9 @@ OGIVE_INLINE V contract(const Symmetric<V>& a, const Symmetric<V>& b) {
   return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.yz * b.yz + a.xz * b.xz + a.xy * b.xy);
 }
 
-// R a R^T with the Cayley rotation of the rotation vector (x, y, z) of this step.
+// R a R^T with the Cayley rotation of the half rotation vector (x, y, z) of this step; c = 2 / (1 + x^2 + y^2 + z^2).
 template <class V>
-OGIVE_INLINE Symmetric<V> rotated(const Symmetric<V>& a, V x, V y, V z) {
-  x *= 0.5;
-  y *= 0.5;
-  z *= 0.5;
-  const V c = 2.0 / (1.0 + x * x + y * y + z * z);
+OGIVE_INLINE Symmetric<V> rotated(const Symmetric<V>& a, V x, V y, V z, V c) {
   // R = I + c (W + W W), W the skew matrix of the half vector.
   const V r00 = 1.0 - c * (y * y + z * z), r01 = c * (x * y - z), r02 = c * (x * z + y);
   const V r10 = c * (x * y + z), r11 = 1.0 - c * (x * x + z * z), r12 = c * (y * z - x);
@@ -89,17 +85,24 @@ template <class V>
 OGIVE_INLINE V thermal_softening(const KernelMaterial& m, V temperature) {
   V t = (temperature - m.room_temperature) * m.inverse_melt_range;
   t = min(max(t, broadcast<V>(0.0)), broadcast<V>(1.0));
+  if (!any(t > 0.0)) return broadcast<V>(1.0);
   return 1.0 - select(t > 0.0, pow(t, broadcast<V>(m.thermal_exponent)), broadcast<V>(0.0));
 }
 
 // Solves seq - 3 G x = (A + B (eps_p + x)^n) theta (1 + C ln rate*) for the plastic strain increment x of the lanes in
 // `plastic`. The left side minus the right falls monotonically and is convex, so Newton from any point ends left of the
-// root after one step and climbs to it from there.
+// root after one step and climbs to it from there. It begins with the slope of the present yield stress, which costs no
+// power: n (Y - A theta) / eps_p; where that is steep, soon after first yield, it begins right of the root instead.
 template <class V, int strength>
 OGIVE_INLINE V plastic_increment(const KernelMaterial& m, const LawState<V>& s, V equivalent, V theta,
                                  IntVecOf<V> plastic) {
   const V three_G = broadcast<V>(3.0 * m.G);
-  V x = max((equivalent - s.yield_stress) / three_G, broadcast<V>(0.0));
+  const V present = max(m.n * (s.yield_stress - m.A * theta), broadcast<V>(0.0));
+  const V present_strain = max(s.plastic_strain, broadcast<V>(1e-300));
+  const V resistance = three_G * present_strain;
+  V x = max((equivalent - s.yield_stress) * present_strain /
+                (resistance + select(present < resistance, present, broadcast<V>(0.0))),
+            broadcast<V>(0.0));
   IntVecOf<V> active = plastic;
   for (int iteration = 0; iteration < 60; ++iteration) {
     const V strain = max(s.plastic_strain + x, broadcast<V>(1e-300));
@@ -127,6 +130,7 @@ OGIVE_INLINE V plastic_increment(const KernelMaterial& m, const LawState<V>& s, 
 
 template <int strength, int eos, class V>
 OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
+  constexpr bool plastic_law = strength == strength_j2_power || strength == strength_johnson_cook;
   const V zero = broadcast<V>(0.0);
   const Symmetric<V> D = {s.L[0][0],
                           s.L[1][1],
@@ -172,23 +176,48 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
     s.volume_ratio = J1;
   } else {
     J1 = J0 * (1.0 + volumetric);  // Eq. (30)
+    IntVecOf<V> failed = zero > zero;
+    if constexpr (plastic_law) {
+      failed = s.plastic_strain >= m.failure_strain;
+      J1 = select(failed, min(J1, broadcast<V>(widest_opening)), J1);
+    }
+    const V dJ = J1 - J0, half_gamma = broadcast<V>(0.5 * m.gruneisen);
+
+    // One division for all, because a processor multiplies ten times meanwhile: by N of the rotation; of Mie-Grueneisen by J,
+    // by H, the Hugoniot's denominator times J, and by F of the implicit pressure (below).
+    const V turn_x = 0.25 * (s.L[2][1] - s.L[1][2]), turn_y = 0.25 * (s.L[0][2] - s.L[2][0]),
+            turn_z = 0.25 * (s.L[1][0] - s.L[0][1]);
+    const V N = 1.0 + turn_x * turn_x + turn_y * turn_y + turn_z * turn_z;
+    V inverse_N, inverse_J, inverse_H, inverse_F, thermal_volume;
+    if constexpr (eos == eos_mie_gruneisen) {
+      // The Hugoniot's pole (mu = 1 / (s - 1)) is kept out of reach: beyond it Eq. (38) has no meaning.
+      const V H = max(1.0 - m.slope * (1.0 - J1), 0.1 * J1);
+      thermal_volume = max(J1, broadcast<V>(1.0));
+      const V F = max(thermal_volume + half_gamma * dJ, 0.25 * thermal_volume);
+      const V NJ = N * J1, HF = H * F, inverse = 1.0 / (NJ * HF);
+      inverse_N = inverse * HF * J1;
+      inverse_J = inverse * HF * N;
+      inverse_H = inverse * NJ * F;
+      inverse_F = inverse * NJ * H;
+    } else {
+      inverse_N = 1.0 / N;
+    }
+
     const V p0 = -(1.0 / 3.0) * trace(s.stress);
     const Symmetric<V> old_deviator =
         rotated<V>({s.stress.xx + p0, s.stress.yy + p0, s.stress.zz + p0, s.stress.yz, s.stress.xz, s.stress.xy},
-                   0.5 * (s.L[2][1] - s.L[1][2]), 0.5 * (s.L[0][2] - s.L[2][0]), 0.5 * (s.L[1][0] - s.L[0][1]));
+                   turn_x, turn_y, turn_z, 2.0 * inverse_N);
     const V two_G = broadcast<V>(2.0 * m.G), mean = (1.0 / 3.0) * volumetric;
     Symmetric<V> deviator = {old_deviator.xx + two_G * (D.xx - mean), old_deviator.yy + two_G * (D.yy - mean),
                              old_deviator.zz + two_G * (D.zz - mean), old_deviator.yz + two_G * D.yz,
                              old_deviator.xz + two_G * D.xz,          old_deviator.xy + two_G * D.xy};
     const V J_mid = 0.5 * (J0 + J1);
 
-    IntVecOf<V> failed = zero > zero;
-    if constexpr (strength == strength_j2_power || strength == strength_johnson_cook) {
-      failed = s.plastic_strain >= m.failure_strain;
-      J1 = select(failed, min(J1, broadcast<V>(widest_opening)), J1);
-      const V equivalent = sqrt(1.5 * contract(deviator, deviator));
-      const IntVecOf<V> plastic = (equivalent > s.yield_stress) & ~failed;
+    if constexpr (plastic_law) {
+      const V equivalent_squared = 1.5 * contract(deviator, deviator);
+      const IntVecOf<V> plastic = (equivalent_squared > s.yield_stress * s.yield_stress) & ~failed;
       if (any(plastic)) {
+        const V equivalent = sqrt(equivalent_squared);
         V theta = broadcast<V>(1.0);
         if constexpr (strength == strength_johnson_cook)
           if (m.thermal) theta = thermal_softening(m, s.temperature);
@@ -199,13 +228,20 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
                     deviator.yz * shrink, deviator.xz * shrink, deviator.xy * shrink};
         s.plastic_strain += x;
         s.plastic_work = J_mid * flow * x;
-        if constexpr (strength == strength_johnson_cook)
+        // The flow stress that was solved for is A + B eps_p^n softened and, at a rate, raised: without a rate no power of
+        // the new strain is needed.
+        V hardened = flow;
+        if constexpr (strength == strength_johnson_cook) {
+          if (m.rate_dependent)
+            hardened = m.A + m.B * pow(max(s.plastic_strain, broadcast<V>(1e-300)), broadcast<V>(m.n));
+          else if (m.thermal)
+            hardened = max(flow, zero) / max(theta, broadcast<V>(1e-300));
           if (m.thermal) {
             s.temperature += m.heating * s.plastic_work;
-            theta = thermal_softening(m, s.temperature);
+            hardened *= thermal_softening(m, s.temperature);
           }
-        const V strain = max(s.plastic_strain, broadcast<V>(1e-300));
-        s.yield_stress = select(plastic, (m.A + m.B * pow(strain, broadcast<V>(m.n))) * theta, s.yield_stress);
+        }
+        s.yield_stress = select(plastic, hardened, s.yield_stress);
         s.newly_failed = plastic & (s.plastic_strain >= m.failure_strain);
         s.plastic_changed = true;
       }
@@ -218,7 +254,6 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
                                  old_deviator.zz + deviator.zz, old_deviator.yz + deviator.yz,
                                  old_deviator.xz + deviator.xz, old_deviator.xy + deviator.xy};
     V energy = s.energy + 0.5 * J_mid * contract(middle, D);
-    const V dJ = J1 - J0;
 
     V p1, modulus;
     if constexpr (eos == eos_linear) {
@@ -227,23 +262,19 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
       energy -= 0.5 * (p0 + p1) * dJ;
       modulus = broadcast<V>(m.K);
     } else {
-      const V inverse_J = 1.0 / J1;
-      const V mu = inverse_J - 1.0;
+      const V mu = (1.0 - J1) * inverse_J;
       const IntVecOf<V> compressed = mu > 0.0;
-      // The Hugoniot's pole (mu = 1 / (s - 1)) is kept out of reach: beyond it Eq. (38) has no meaning.
-      const V denominator = max(1.0 - (m.slope - 1.0) * mu, broadcast<V>(0.1));
-      const V inverse = 1.0 / denominator;
+      const V inverse = J1 * inverse_H;  // 1 / (1 - (s - 1) mu)
       const V scale = m.rho_c0_squared * inverse * inverse;
       const V hugoniot = scale * mu * inverse_J;
-      const V half_gamma = broadcast<V>(0.5 * m.gruneisen);
       const V cold_compressed = hugoniot * (1.0 - half_gamma * mu * J1);
       const V cold_expanded = m.rho_c0_squared * mu;
       const V cold = select(compressed, cold_compressed, cold_expanded);
       const V thermal = m.gruneisen * select(compressed, broadcast<V>(1.0), inverse_J);
-      // p1 = cold + thermal (energy - (p0 + p1) dJ / 2), solved for p1. The factor of p1 is 1 - O(strain increment): it
-      // comes near zero only if a volume halves within one step, and is then held, which only makes p1 less implicit.
-      const V factor = max(1.0 + 0.5 * thermal * dJ, broadcast<V>(0.25));
-      p1 = (cold + thermal * (energy - 0.5 * p0 * dJ)) / factor;
+      // p1 = cold + thermal (energy - (p0 + p1) dJ / 2), solved for p1, with thermal = gamma0 / max(J, 1). The factor of p1,
+      // F / max(J, 1), is 1 - O(strain increment): it comes near zero only if a volume halves within one step, and is then
+      // held, which only makes p1 less implicit.
+      p1 = (cold * thermal_volume + m.gruneisen * (energy - 0.5 * p0 * dJ)) * inverse_F;
       p1 = select(failed, max(p1, zero), p1);
       energy -= 0.5 * (p0 + p1) * dJ;
       const V slope_of_hugoniot = scale * (1.0 + 2.0 * mu + 2.0 * (m.slope - 1.0) * mu * inverse_J * inverse);
@@ -255,7 +286,7 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
       modulus = select(compressed, max(stiffness_compressed, broadcast<V>(m.rho_c0_squared)), stiffness_expanded);
     }
 
-    if constexpr (strength == strength_j2_power || strength == strength_johnson_cook) {
+    if constexpr (plastic_law) {
       if (any(s.newly_failed)) {
         // The deviator's elastic energy and, in tension, that of the pressure leave the particle.
         const V tension = max(-p1, zero);

@@ -1,7 +1,8 @@
 // Vectors of doubles for kernels that are compiled once per instruction set.
 //
-// Vec<W> holds W doubles (W = 2, 4, 8), IntVec<W> W 64-bit integers; + - * / and comparisons are the compiler's own and
-// act lane by lane, so a lane's result never depends on its place in the vector. A comparison gives an IntVec of 0
+// Vec<W> holds W doubles (W = 2, 4, 8, 16), IntVec<W> W 64-bit integers: the compiler's own vector where a register holds
+// it, a Pair of halves otherwise. + - * / and comparisons act lane by lane, so a lane's result never depends on its place
+// in the vector. A comparison gives an IntVec of 0
 // and -1. Scalars mix freely with vectors: 2.0 * v.
 //
 // Everything lives in ogive::OGIVE_ISA_NAMESPACE, which the build sets to another name for each instruction set, and is
@@ -26,35 +27,6 @@
 namespace ogive {
 namespace OGIVE_ISA_NAMESPACE {
 
-// One specialisation per width: g++ 12 drops a vector_size that depends on a template parameter.
-template <int W>
-struct LaneTypes;
-template <>
-struct LaneTypes<2> {
-  typedef double Double __attribute__((vector_size(16)));
-  typedef std::int64_t Int __attribute__((vector_size(16)));
-  typedef std::uint64_t Unsigned __attribute__((vector_size(16)));
-};
-template <>
-struct LaneTypes<4> {
-  typedef double Double __attribute__((vector_size(32)));
-  typedef std::int64_t Int __attribute__((vector_size(32)));
-  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
-};
-template <>
-struct LaneTypes<8> {
-  typedef double Double __attribute__((vector_size(64)));
-  typedef std::int64_t Int __attribute__((vector_size(64)));
-  typedef std::uint64_t Unsigned __attribute__((vector_size(64)));
-};
-
-template <int W>
-using Vec = typename LaneTypes<W>::Double;
-template <int W>
-using IntVec = typename LaneTypes<W>::Int;
-template <int W>
-using UnsignedVec = typename LaneTypes<W>::Unsigned;
-
 // The widest vector that one register of this instruction set holds.
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 constexpr int native_width = 8;
@@ -64,6 +36,55 @@ constexpr int native_width = 4;
 constexpr int native_width = 2;
 #endif
 
+// One specialisation per width: g++ 12 drops a vector_size that depends on a template parameter.
+template <int W>
+struct RegisterTypes;
+template <>
+struct RegisterTypes<2> {
+  typedef double Double __attribute__((vector_size(16)));
+  typedef std::int64_t Int __attribute__((vector_size(16)));
+  typedef std::uint64_t Unsigned __attribute__((vector_size(16)));
+};
+template <>
+struct RegisterTypes<4> {
+  typedef double Double __attribute__((vector_size(32)));
+  typedef std::int64_t Int __attribute__((vector_size(32)));
+  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+};
+template <>
+struct RegisterTypes<8> {
+  typedef double Double __attribute__((vector_size(64)));
+  typedef std::int64_t Int __attribute__((vector_size(64)));
+  typedef std::uint64_t Unsigned __attribute__((vector_size(64)));
+};
+
+// A vector of two registers or more. The compiler would take a vector that is wider than a register apart through memory;
+// and two chains of operations side by side keep a processor busy where one waits for its own results.
+template <class T>
+struct Pair {
+  T a, b;
+  inline __attribute__((always_inline)) auto operator[](int lane) const {
+    constexpr int width = static_cast<int>(sizeof(T) / 8);
+    return lane < width ? a[lane] : b[lane - width];
+  }
+};
+
+template <int W, bool one_register = (W <= native_width)>
+struct LaneTypes : RegisterTypes<W> {};
+template <int W>
+struct LaneTypes<W, false> {
+  using Double = Pair<typename LaneTypes<W / 2>::Double>;
+  using Int = Pair<typename LaneTypes<W / 2>::Int>;
+  using Unsigned = Pair<typename LaneTypes<W / 2>::Unsigned>;
+};
+
+template <int W>
+using Vec = typename LaneTypes<W>::Double;
+template <int W>
+using IntVec = typename LaneTypes<W>::Int;
+template <int W>
+using UnsignedVec = typename LaneTypes<W>::Unsigned;
+
 // Number of lanes of the vector type V, and the integer vectors as wide as it.
 template <class V>
 constexpr int width_of = static_cast<int>(sizeof(V) / 8);
@@ -71,6 +92,69 @@ template <class V>
 using IntVecOf = IntVec<width_of<V>>;
 template <class V>
 using UnsignedVecOf = UnsignedVec<width_of<V>>;
+
+// ------------------------------------------------------------------------------------------------ operators of pairs
+
+template <class T>
+constexpr bool is_pair = false;
+template <class T>
+constexpr bool is_pair<Pair<T>> = true;
+
+#define OGIVE_PAIR_OPERATOR(op)                                                                    \
+  template <class T, class U>                                                                      \
+  OGIVE_INLINE auto operator op(const Pair<T>& x, const Pair<U>& y)->Pair<decltype(x.a op y.a)> {  \
+    return {x.a op y.a, x.b op y.b};                                                               \
+  }                                                                                                \
+  template <class T, class S>                                                                      \
+    requires(!is_pair<S>)                                                                          \
+  OGIVE_INLINE auto operator op(const Pair<T>& x, S y)->Pair<decltype(x.a op y)> {                 \
+    return {x.a op y, x.b op y};                                                                   \
+  }                                                                                                \
+  template <class T, class S>                                                                      \
+    requires(!is_pair<S>)                                                                          \
+  OGIVE_INLINE auto operator op(S x, const Pair<T>& y)->Pair<decltype(x op y.a)> {                 \
+    return {x op y.a, x op y.b};                                                                   \
+  }
+OGIVE_PAIR_OPERATOR(+)
+OGIVE_PAIR_OPERATOR(-)
+OGIVE_PAIR_OPERATOR(*)
+OGIVE_PAIR_OPERATOR(/)
+OGIVE_PAIR_OPERATOR(&)
+OGIVE_PAIR_OPERATOR(|)
+OGIVE_PAIR_OPERATOR(<)
+OGIVE_PAIR_OPERATOR(>)
+OGIVE_PAIR_OPERATOR(<=)
+OGIVE_PAIR_OPERATOR(>=)
+OGIVE_PAIR_OPERATOR(==)
+OGIVE_PAIR_OPERATOR(!=)
+OGIVE_PAIR_OPERATOR(<<)
+OGIVE_PAIR_OPERATOR(>>)
+#undef OGIVE_PAIR_OPERATOR
+
+template <class T>
+OGIVE_INLINE Pair<T> operator-(const Pair<T>& x) {
+  return {-x.a, -x.b};
+}
+template <class T>
+OGIVE_INLINE Pair<T> operator~(const Pair<T>& x) {
+  return {~x.a, ~x.b};
+}
+template <class T, class U>
+OGIVE_INLINE Pair<T>& operator+=(Pair<T>& x, const U& y) {
+  return x = x + y;
+}
+template <class T, class U>
+OGIVE_INLINE Pair<T>& operator-=(Pair<T>& x, const U& y) {
+  return x = x - y;
+}
+template <class T, class U>
+OGIVE_INLINE Pair<T>& operator*=(Pair<T>& x, const U& y) {
+  return x = x * y;
+}
+template <class T, class U>
+OGIVE_INLINE Pair<T>& operator&=(Pair<T>& x, const U& y) {
+  return x = x & y;
+}
 
 // ---------------------------------------------------------------------------------------------- making and storing
 
@@ -103,6 +187,43 @@ OGIVE_INLINE void store_aligned(double* to, V value) {
   store(static_cast<double*>(__builtin_assume_aligned(to, sizeof(V))), value);
 }
 
+template <class V>
+OGIVE_INLINE void set_lane(V& v, int lane, double value) {
+  if constexpr (is_pair<V>)
+    set_lane(lane < width_of<V> / 2 ? v.a : v.b, lane % (width_of<V> / 2), value);
+  else
+    v[lane] = value;
+}
+
+// ------------------------------------------------------------------------------------------------------- halves
+
+template <class T>
+OGIVE_INLINE T lower_half(const Pair<T>& v) {
+  return v.a;
+}
+template <class T>
+OGIVE_INLINE T upper_half(const Pair<T>& v) {
+  return v.b;
+}
+#if defined(__AVX__)
+OGIVE_INLINE Vec<2> lower_half(Vec<4> v) { return __builtin_shufflevector(v, v, 0, 1); }
+OGIVE_INLINE Vec<2> upper_half(Vec<4> v) { return __builtin_shufflevector(v, v, 2, 3); }
+OGIVE_INLINE Vec<4> join(Vec<2> lower, Vec<2> upper) { return __builtin_shufflevector(lower, upper, 0, 1, 2, 3); }
+#else
+OGIVE_INLINE Vec<4> join(Vec<2> lower, Vec<2> upper) { return {lower, upper}; }
+#endif
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+OGIVE_INLINE Vec<4> lower_half(Vec<8> v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+OGIVE_INLINE Vec<4> upper_half(Vec<8> v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+OGIVE_INLINE Vec<8> join(Vec<4> lower, Vec<4> upper) {
+  return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+#else
+OGIVE_INLINE Vec<8> join(Vec<4> lower, Vec<4> upper) { return {lower, upper}; }
+#endif
+
+// -------------------------------------------------------------------------------------------- three doubles, prefetch
+
 // Three doubles and a zero; no more is read, and none but the three is written.
 OGIVE_INLINE Vec<4> load_three(const double* from) {
 #if defined(__AVX512F__) && defined(__AVX512VL__)
@@ -110,14 +231,15 @@ OGIVE_INLINE Vec<4> load_three(const double* from) {
 #elif defined(__AVX__)
   return _mm256_maskload_pd(from, _mm256_set_epi64x(0, -1, -1, -1));
 #else
-  return Vec<4>{from[0], from[1], from[2], 0.0};
+  const double four[4] = {from[0], from[1], from[2], 0.0};
+  return load<Vec<4>>(four);
 #endif
 }
 OGIVE_INLINE void store_three(double* to, Vec<4> v) {
 #if defined(__AVX512F__) && defined(__AVX512VL__)
   _mm256_mask_storeu_pd(to, 7, v);
 #else
-  store(to, __builtin_shufflevector(v, v, 0, 1));
+  store(to, lower_half(v));
   to[2] = v[2];
 #endif
 }
@@ -125,36 +247,37 @@ OGIVE_INLINE void store_three(double* to, Vec<4> v) {
 // Asks for the cache line at `at`, which need not exist.
 OGIVE_INLINE void prefetch(const double* at) { __builtin_prefetch(at); }
 
-// ------------------------------------------------------------------------------------------------------- halves
-
-OGIVE_INLINE Vec<2> lower_half(Vec<4> v) { return __builtin_shufflevector(v, v, 0, 1); }
-OGIVE_INLINE Vec<2> upper_half(Vec<4> v) { return __builtin_shufflevector(v, v, 2, 3); }
-OGIVE_INLINE Vec<4> lower_half(Vec<8> v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
-OGIVE_INLINE Vec<4> upper_half(Vec<8> v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
-OGIVE_INLINE Vec<4> join(Vec<2> lower, Vec<2> upper) { return __builtin_shufflevector(lower, upper, 0, 1, 2, 3); }
-OGIVE_INLINE Vec<8> join(Vec<4> lower, Vec<4> upper) {
-  return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
 // ------------------------------------------------------------------------------------------------- bits and choices
 
 template <class V>
 OGIVE_INLINE IntVecOf<V> as_int(V v) {
-  return reinterpret_cast<IntVecOf<V>>(v);
+  if constexpr (is_pair<V>)
+    return {as_int(v.a), as_int(v.b)};
+  else
+    return reinterpret_cast<IntVecOf<V>>(v);
 }
 template <class V>
 OGIVE_INLINE UnsignedVecOf<V> as_unsigned(V v) {
-  return reinterpret_cast<UnsignedVecOf<V>>(v);
+  if constexpr (is_pair<V>)
+    return {as_unsigned(v.a), as_unsigned(v.b)};
+  else
+    return reinterpret_cast<UnsignedVecOf<V>>(v);
 }
 template <class I>
 OGIVE_INLINE Vec<width_of<I>> as_double(I bits) {
-  return reinterpret_cast<Vec<width_of<I>>>(bits);
+  if constexpr (is_pair<I>)
+    return {as_double(bits.a), as_double(bits.b)};
+  else
+    return reinterpret_cast<Vec<width_of<I>>>(bits);
 }
 
 // Lane by lane: mask ? if_true : if_false. The mask is a comparison's result.
 template <class M, class V>
 OGIVE_INLINE V select(M mask, V if_true, V if_false) {
-  return mask ? if_true : if_false;
+  if constexpr (is_pair<V>)
+    return {select(mask.a, if_true.a, if_false.a), select(mask.b, if_true.b, if_false.b)};
+  else
+    return mask ? if_true : if_false;
 }
 
 // a < b ? a : b and a > b ? a : b as one instruction each. The second argument where either is not a number:
@@ -172,7 +295,10 @@ OGIVE_INLINE V min(V a, V b) {
 #if defined(__SSE2__)
   if constexpr (width == 2) return _mm_min_pd(a, b);
 #endif
-  return a < b ? a : b;
+  if constexpr (is_pair<V>)
+    return {min(a.a, b.a), min(a.b, b.b)};
+  else
+    return a < b ? a : b;
 }
 template <class V>
 OGIVE_INLINE V max(V a, V b) {
@@ -186,7 +312,10 @@ OGIVE_INLINE V max(V a, V b) {
 #if defined(__SSE2__)
   if constexpr (width == 2) return _mm_max_pd(a, b);
 #endif
-  return a > b ? a : b;
+  if constexpr (is_pair<V>)
+    return {max(a.a, b.a), max(a.b, b.b)};
+  else
+    return a > b ? a : b;
 }
 
 template <class V>
@@ -207,18 +336,28 @@ OGIVE_INLINE unsigned mask_bits(M mask) {
 #if defined(__SSE2__)
   if constexpr (width == 2) return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(mask)));
 #endif
-  unsigned bits = 0;
-  for (int lane = 0; lane < width; ++lane) bits |= (mask[lane] != 0 ? 1u : 0u) << lane;
-  return bits;
+  if constexpr (is_pair<M>) {
+    return mask_bits(mask.a) | mask_bits(mask.b) << (width / 2);
+  } else {
+    unsigned bits = 0;
+    for (int lane = 0; lane < width; ++lane) bits |= (mask[lane] != 0 ? 1u : 0u) << lane;
+    return bits;
+  }
 }
 
 template <class M>
 OGIVE_INLINE bool any(M mask) {
-  return mask_bits(mask) != 0;
+  if constexpr (is_pair<M>)
+    return any(mask.a | mask.b);
+  else
+    return mask_bits(mask) != 0;
 }
 template <class M>
 OGIVE_INLINE bool all(M mask) {
-  return mask_bits(mask) == (1u << width_of<M>)-1u;
+  if constexpr (is_pair<M>)
+    return all(mask.a & mask.b);
+  else
+    return mask_bits(mask) == (1u << width_of<M>)-1u;
 }
 
 // ------------------------------------------------------------------------------------------------------ arithmetic
@@ -236,13 +375,30 @@ OGIVE_INLINE V sqrt(V v) {
 #if defined(__SSE2__)
   if constexpr (width == 2) return _mm_sqrt_pd(v);
 #endif
-  if constexpr (width > 2) {
-    return join(sqrt(lower_half(v)), sqrt(upper_half(v)));
+  if constexpr (is_pair<V>) {
+    return {sqrt(v.a), sqrt(v.b)};
   } else {
     V result = v;
     for (int lane = 0; lane < width; ++lane) result[lane] = __builtin_sqrt(v[lane]);
     return result;
   }
+}
+
+// a b + c, rounded once where the instruction set has it.
+template <class V>
+OGIVE_INLINE V fused(V a, V b, V c) {
+#if defined(__FMA__)
+  constexpr int width = width_of<V>;
+#if defined(__AVX512F__)
+  if constexpr (width == 8) return _mm512_fmadd_pd(a, b, c);
+#endif
+  if constexpr (width == 4) return _mm256_fmadd_pd(a, b, c);
+  if constexpr (width == 2) return _mm_fmadd_pd(a, b, c);
+#endif
+  if constexpr (is_pair<V>)
+    return {fused(a.a, b.a, c.a), fused(a.b, b.b, c.b)};
+  else
+    return a * b + c;
 }
 
 // Nearest integer, halves to even, for |v| <= 2^51: adding 1.5 * 2^52 leaves no bits for the fraction.
@@ -266,7 +422,6 @@ OGIVE_INLINE void transpose(Vec<4>& a, Vec<4>& b, Vec<4>& c, Vec<4>& d) {
   c = __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7);
   d = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7);
 #else
-  // In pairs, because the compiler would take 4-lane shuffles apart through memory.
   const Vec<2> a0 = lower_half(a), a1 = upper_half(a), b0 = lower_half(b), b1 = upper_half(b);
   const Vec<2> c0 = lower_half(c), c1 = upper_half(c), d0 = lower_half(d), d1 = upper_half(d);
   a = join(__builtin_shufflevector(a0, b0, 0, 2), __builtin_shufflevector(c0, d0, 0, 2));

@@ -8,7 +8,8 @@
 // The coefficients are minimax for the relative error (tools/vector_math_coefficients.py): 1.8e-18 for log, 1.1e-17 for
 // exp, so that rounding is what remains: about 1 ulp (measured errors: tests/unit/vector_math_test.cpp).
 // A lane's result depends on that lane alone. Results may differ in the last bit between instruction sets with and
-// without fused multiply-add. The polynomials are split into even and odd powers: half the latency of Horner's scheme
+// without fused multiply-add. (A sum of two products says which of them is fused, or the compiler might choose differently
+// for one lane and another.) The polynomials are split into even and odd powers: half the latency of Horner's scheme
 // for one more product. NaN gives NaN.
 #pragma once
 
@@ -39,9 +40,9 @@ OGIVE_INLINE V log(V x) {
   const V zz = z * z;
   const V even = ((0x1.2f05657ace981p-3 * zz + 0x1.74663eea20874p-3) * zz + 0x1.24924941f12d7p-2) * zz;
   const V odd = (0x1.39a1ba886eaccp-3 * zz + 0x1.c71c520955757p-3) * zz + 0x1.999999997fdb7p-2;
-  const V p = (z * odd + even) + 0x1.5555555555592p-1;
-  const V correction = k * log2_low - s * (f - z * p);
-  return (k * log2_high + 0.0 * x) + (f + correction);  // 0 x: NaN where x is not finite
+  const V p = fused(z, odd, even) + 0x1.5555555555592p-1;
+  const V correction = fused(k, broadcast<V>(log2_low), -s * (f - z * p));
+  return fused(k, broadcast<V>(log2_high), 0.0 * x) + (f + correction);  // 0 x: NaN where x is not finite
 }
 
 // Exponential; arguments above 709.78 give the value there (1.79e308), arguments below -708.39 give 0.

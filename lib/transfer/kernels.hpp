@@ -8,6 +8,7 @@
 
 namespace ogive {
 
+constexpr int shape_count = 3;    // shape functions, in the order of ShapeFunction
 constexpr int group_padding = 8;  // particles; groups are padded to a multiple of it
 
 // A grid node of one velocity field. Between mapping and update: v = {momentum or velocity, mass}, f = {force, -};
@@ -90,24 +91,26 @@ struct MoveSums {
 // Kernels that few runs need, in a file of their own. By shape function; the arrays hold the records of the neighbour blocks.
 struct OptionalKernels {
   // Sums of the stress at nodes where bodies meet.
-  void (*map_contact_stress[2])(const KernelGroup&, const KernelParticles&, ContactStress* const (&)[27]);
+  void (*map_contact_stress[shape_count])(const KernelGroup&, const KernelParticles&, ContactStress* const (&)[27]);
   // XPIC: one pass of the filter from `filter[].v` to momentum in `filter[].f`, and the particle update.
-  void (*filter_velocity[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27]);
-  void (*update_particles_xpic[2])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27], MoveSums&);
+  void (*filter_velocity[shape_count])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27]);
+  void (*update_particles_xpic[shape_count])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27],
+                                             MoveSums&);
 };
 
 struct KernelTable {
   const char* name;
   // Nodal mass and momentum, Eqs. (27) and (28), by shape function, without and with affine velocity.
-  void (*map_momentum[2][2])(const KernelGroup&, const KernelParticles&);
+  void (*map_momentum[shape_count][2])(const KernelGroup&, const KernelParticles&);
   // Sums for the normals, Eq. (9), and the fill of nodes.
-  void (*map_contact[2])(const KernelGroup&, const KernelParticles&);
+  void (*map_contact[shape_count])(const KernelGroup&, const KernelParticles&);
   // Eqs. (29)-(31) by shape function, strength and equation of state.
-  void (*update_stress[2][4][2])(const KernelGroup&, const KernelParticles&, const KernelMaterial&, StressSums&);
+  void (*update_stress[shape_count][4][2])(const KernelGroup&, const KernelParticles&, const KernelMaterial&,
+                                           StressSums&);
   // Eq. (31) by itself, for the stress that an earlier step left.
-  void (*map_internal_force[2])(const KernelGroup&, const KernelParticles&);
+  void (*map_internal_force[shape_count])(const KernelGroup&, const KernelParticles&);
   // Eqs. (33), (34) by shape function, without and with affine velocity.
-  void (*update_particles[2][2])(const KernelGroup&, const KernelParticles&, MoveSums&);
+  void (*update_particles[shape_count][2])(const KernelGroup&, const KernelParticles&, MoveSums&);
   const OptionalKernels* optional;
 };
 

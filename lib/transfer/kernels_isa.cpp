@@ -18,12 +18,14 @@ extern const KernelTable table;
 const KernelTable table = {
     OGIVE_TEXT(OGIVE_ISA_NAMESPACE),
     {{map_momentum<LinearShape, false>, map_momentum<LinearShape, true>},
-     {map_momentum<QuadraticBSplineShape, false>, map_momentum<QuadraticBSplineShape, true>}},
-    {map_contact<LinearShape>, map_contact<QuadraticBSplineShape>},
-    {OGIVE_LAWS(LinearShape), OGIVE_LAWS(QuadraticBSplineShape)},
-    {map_internal_force<LinearShape>, map_internal_force<QuadraticBSplineShape>},
+     {map_momentum<QuadraticBSplineShape, false>, map_momentum<QuadraticBSplineShape, true>},
+     {map_momentum<GimpShape, false>, map_momentum<GimpShape, true>}},
+    {map_contact<LinearShape>, map_contact<QuadraticBSplineShape>, map_contact<GimpShape>},
+    {OGIVE_LAWS(LinearShape), OGIVE_LAWS(QuadraticBSplineShape), OGIVE_LAWS(GimpShape)},
+    {map_internal_force<LinearShape>, map_internal_force<QuadraticBSplineShape>, map_internal_force<GimpShape>},
     {{update_particles<LinearShape, false>, update_particles<LinearShape, true>},
-     {update_particles<QuadraticBSplineShape, false>, update_particles<QuadraticBSplineShape, true>}},
+     {update_particles<QuadraticBSplineShape, false>, update_particles<QuadraticBSplineShape, true>},
+     {update_particles<GimpShape, false>, update_particles<GimpShape, true>}},
     &optional_kernels,
 };
 

@@ -8,9 +8,10 @@ namespace OGIVE_ISA_NAMESPACE {
 
 extern const OptionalKernels optional_kernels;
 const OptionalKernels optional_kernels = {
-    {map_contact_stress<LinearShape>, map_contact_stress<QuadraticBSplineShape>},
-    {filter_velocity<LinearShape>, filter_velocity<QuadraticBSplineShape>},
-    {update_particles_xpic<LinearShape>, update_particles_xpic<QuadraticBSplineShape>},
+    {map_contact_stress<LinearShape>, map_contact_stress<QuadraticBSplineShape>, map_contact_stress<GimpShape>},
+    {filter_velocity<LinearShape>, filter_velocity<QuadraticBSplineShape>, filter_velocity<GimpShape>},
+    {update_particles_xpic<LinearShape>, update_particles_xpic<QuadraticBSplineShape>,
+     update_particles_xpic<GimpShape>},
 };
 
 }  // namespace OGIVE_ISA_NAMESPACE

@@ -366,7 +366,9 @@ void map_contact(const KernelGroup& group, const KernelParticles& particles) {
   Scatter<Shape>::begin(sums, tile);
   // Multiplied, not built: valgrind, which the guard of the speed runs under, lacks the instruction for a lone first
   // element.
-  const Record of_x = {1, 0, 0, 0}, of_y = {0, 1, 0, 0}, of_z = {0, 0, 1, 0}, of_w = {0, 0, 0, 1};
+  alignas(32) constexpr double units[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  const Record of_x = load_aligned<Record>(units[0]), of_y = load_aligned<Record>(units[1]),
+               of_z = load_aligned<Record>(units[2]), of_w = load_aligned<Record>(units[3]);
   Weights weights;
   for (std::int64_t p = group.begin; p < group.end; p += lane_count) {
     Lanes x, y, z, mass;
@@ -446,7 +448,7 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
         if (from_grid != 0) {
           const Record flip = v[lane];
           v[lane] = flip * kept + velocity * from_grid;
-          v[lane][3] = 1.0;
+          set_lane(v[lane], 3, 1.0);
           lost += (flip - v[lane]) * (flip + v[lane] - increment) * position[3];
         }
         store_aligned(to, v[lane]);

@@ -81,7 +81,7 @@ void update_particles_xpic(const KernelGroup& group, const KernelParticles& part
         const Record flip = old + increment;
         v[lane] = gather_value<Shape>(weights[i / lane_count], lane, star) + increment;
         power += old * increment * position[3];
-        v[lane][3] = 1.0;
+        set_lane(v[lane], 3, 1.0);
         lost += (flip - v[lane]) * (flip + v[lane] - increment) * position[3];
         store_aligned(to, v[lane]);
       }

@@ -94,6 +94,16 @@ TEST(Scene, thick_plate_example) {
   EXPECT_EQ(scene.output.results[0].body, "rod");
 }
 
+TEST(Scene, every_shape_function_has_a_name) {
+  const std::string file = std::string(OGIVE_SCENES) + "/thick_plate/scene.toml";
+  for (const auto& [name, value] : {std::pair{"linear", OGIVE_SHAPE_LINEAR},
+                                    std::pair{"quadratic_bspline", OGIVE_SHAPE_QUADRATIC_BSPLINE},
+                                    std::pair{"gimp", OGIVE_SHAPE_GIMP}}) {
+    const Document document = Document::from_file(file, {std::string("numerics.shape_function=") + name});
+    EXPECT_EQ(driver::read_scene(document, file).numerics.shape_function, value) << name;
+  }
+}
+
 TEST(Scene, a_file_of_settings_is_merged_in_its_turn) {
   const std::string file = std::string(OGIVE_SCENES) + "/thick_plate/scene.toml";
   const std::string settings = std::string(OGIVE_SCENES) + "/../settings/huang2010.toml";

@@ -33,7 +33,8 @@ struct Settings {
 
 std::string text_of(const Settings& settings) {
   const char* methods[] = {"SingleField", "HuangFirst", "HuangSecond"};
-  return std::string(settings.shape == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline") + methods[settings.method] +
+  const char* shapes[] = {"Linear", "BSpline", "Gimp"};
+  return std::string(shapes[settings.shape]) + methods[settings.method] +
          (settings.transfer == OGIVE_TRANSFER_FLIP ? "Flip" : "") +
          (settings.order == OGIVE_UPDATE_STRESS_LAST ? "StressLast" : "") +
          std::to_string(settings.threads) + "Threads";
@@ -242,6 +243,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Restart,
                                          Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_SECOND, OGIVE_TRANSFER_FLIP},
                                          Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_SECOND,
                                                   OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_UPDATE_STRESS_LAST},
+                                         Settings{OGIVE_SHAPE_GIMP, 2, OGIVE_CONTACT_HUANG_SECOND},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 1, OGIVE_CONTACT_HUANG_FIRST,
                                                   OGIVE_TRANSFER_FLIP, OGIVE_UPDATE_STRESS_LAST}),
                          [](const auto& info) { return text_of(info.param); });

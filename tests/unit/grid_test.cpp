@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -101,6 +102,55 @@ TEST(Grid, GroupsHoldEveryParticleOnceInItsBlockOrderedByCellAndPadded) {
   }
   EXPECT_EQ(end, body.padded);
   EXPECT_EQ(seen.size(), 3000u);
+}
+
+// More particles than are moved at a time, near their old places (the ring goes round) and anywhere (it holds all), while some
+// leave: every value stays with its particle.
+TEST(Grid, WhatAParticleCarriesGoesWithIt) {
+  World world({scattered(70000, {0, 10, 20}, 40)});
+  BodyState& body = world.state.bodies[0];
+  body.affine.resize(affine_size * static_cast<std::size_t>(body.padded));
+  const auto tag = [](std::int32_t number, int field) { return 100.0 * number + field; };
+  for (std::int64_t p = 0; p < body.padded; ++p) {
+    const std::int32_t n = body.number[p];
+    for (int c = 0; c < 3; ++c) body.velocity[4 * p + c] = tag(n, c);
+    for (int c = 0; c < affine_size; ++c) body.affine[affine_size * p + c] = tag(n, 10 + c);
+    for (int c = 0; c < 6; ++c) body.stress[c][p] = tag(n, 20 + c);
+    body.energy[p] = tag(n, 30);
+  }
+  std::int64_t particles = 70000;
+  for (const double edge : {1.5, 1.5, 40.0}) {
+    const std::vector<Vector3> moves = scattered(70000, {-edge / 2, -edge / 2, -edge / 2}, edge);
+    std::vector<Vector3> place(70000, {-1000, 0, 0});
+    for (std::int64_t p = 0; p < body.padded; ++p)
+      if (body.number[p] >= 0) {
+        for (int c = 0; c < 3; ++c) body.position[4 * p + c] += moves[body.number[p]][c];
+        if (body.number[p] % 7 == 0 && edge > 2) body.position[4 * p] = -11;
+        std::copy_n(&body.position[4 * p], 3, place[body.number[p]].begin());
+      }
+    bin_particles(world.model, world.state, world.workspace, true);
+    if (edge > 2) {
+      EXPECT_LE(body.particles, particles - 10000);
+    } else {
+      EXPECT_EQ(body.particles, particles);
+    }
+    std::set<std::int32_t> seen;
+    for (const Group& group : body.groups)
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+        const std::int32_t n = body.number[p];
+        ASSERT_TRUE(n >= 0 && seen.insert(n).second);
+        ASSERT_EQ(body.position[4 * p + 3], 1 + n);
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_EQ(body.position[4 * p + c], place[n][c]);
+          ASSERT_EQ(body.velocity[4 * p + c], tag(n, c));
+        }
+        for (int c = 0; c < affine_size; ++c) ASSERT_EQ(body.affine[affine_size * p + c], tag(n, 10 + c));
+        for (int c = 0; c < 6; ++c) ASSERT_EQ(body.stress[c][p], tag(n, 20 + c));
+        ASSERT_EQ(body.energy[p], tag(n, 30));
+      }
+    EXPECT_EQ(static_cast<std::int64_t>(seen.size()), body.particles);
+    particles = body.particles;
+  }
 }
 
 TEST(Grid, GroupsOfOneColourTouchNoCommonNodeUnlessTheyShareAPencil) {

@@ -38,7 +38,7 @@ Sums sums_at(double xi) {
 
 template <class Shape>
 class Weights : public testing::Test {};
-using Shapes = testing::Types<LinearShape, QuadraticBSplineShape>;
+using Shapes = testing::Types<LinearShape, QuadraticBSplineShape, GimpShape>;
 TYPED_TEST_SUITE(Weights, Shapes);
 
 constexpr double places[] = {1.0, 1.0 + 1e-12, 1.2, 1.5 - 1e-12, 1.5, 1.7, 2.0 - 1e-12, 2.0, 3.999, 4.5};
@@ -69,14 +69,43 @@ TYPED_TEST(Weights, AreContinuousAcrossNodesAndCells) {
   }
 }
 
-TEST(Weights, DerivativesAreThoseOfTheWeights) {
+TYPED_TEST(Weights, DerivativesAreThoseOfTheWeights) {
+  constexpr int N = TypeParam::nodes;
   const double step = 1e-6;
   for (const double xi : {1.1, 1.3, 1.45, 1.8}) {
-    V first, w0[3], w1[3], d0[3], d1[3], d[3], w[3];
-    QuadraticBSplineShape::at(broadcast<V>(xi - step), first, w0, d0);
-    QuadraticBSplineShape::at(broadcast<V>(xi + step), first, w1, d1);
-    QuadraticBSplineShape::at(broadcast<V>(xi), first, w, d);
-    for (int n = 0; n < 3; ++n) EXPECT_NEAR(d[n][0], (w1[n][0] - w0[n][0]) / (2 * step), 1e-9) << xi;
+    V first, w0[N], w1[N], d0[N], d1[N], d[N], w[N];
+    TypeParam::at(broadcast<V>(xi - step), first, w0, d0);
+    TypeParam::at(broadcast<V>(xi + step), first, w1, d1);
+    TypeParam::at(broadcast<V>(xi), first, w, d);
+    for (int n = 0; n < N; ++n) EXPECT_NEAR(d[n][0], (w1[n][0] - w0[n][0]) / (2 * step), 1e-9) << xi;
+  }
+}
+
+// The linear function of distance x averaged over the particle, by the midpoint rule: exact but where a kink is inside.
+TEST(Weights, OfGimpAreTheLinearFunctionAveragedOverTheParticle) {
+  const int parts = 20000;
+  for (const double xi : places) {
+    V first, w[3], d[3];
+    GimpShape::at(broadcast<V>(xi), first, w, d);
+    for (int n = 0; n < 3; ++n) {
+      double mean = 0;
+      for (int i = 0; i < parts; ++i) {
+        const double x = first[0] + n - xi + gimp_half_width * (2 * (i + 0.5) / parts - 1);
+        mean += std::fmax(0, 1 - std::abs(x)) / parts;
+      }
+      EXPECT_NEAR(w[n][0], mean, 1e-9) << xi << " node " << n;
+    }
+  }
+}
+
+// No node is pushed that gets no mass: weight and derivative vanish together.
+TEST(Weights, OfGimpVanishWithTheirDerivatives) {
+  for (double xi = 1; xi < 2; xi += 1.0 / 64) {
+    V first, w[3], d[3];
+    GimpShape::at(broadcast<V>(xi), first, w, d);
+    for (const int n : {0, 2}) {
+      EXPECT_EQ(w[n][0] == 0, d[n][0] == 0) << xi << " node " << n;
+    }
   }
 }
 
@@ -85,6 +114,11 @@ TEST(Weights, SecondMomentsAreThoseThatAffineVelocitiesAssume) {
   for (const double xi : places) EXPECT_NEAR(sums_at<QuadraticBSplineShape>(xi).second_moment, 0.25, 1e-14) << xi;
   for (const double xi : {1.2, 1.5, 1.7})
     EXPECT_NEAR(sums_at<LinearShape>(xi).second_moment, (xi - 1) * (2 - xi), 1e-14) << xi;
+  // GIMP: the hat's, but l / 2 and not 0 at a node; never above 1/4.
+  EXPECT_NEAR(sums_at<GimpShape>(2.0).second_moment, 0.5 * gimp_half_width, 1e-14);
+  for (const double xi : {1.25, 1.3, 1.5, 1.7})
+    EXPECT_NEAR(sums_at<GimpShape>(xi).second_moment, (xi - 1) * (2 - xi), 1e-14) << xi;
+  for (const double xi : places) EXPECT_LE(sums_at<GimpShape>(xi).second_moment, 0.25 + 1e-14) << xi;
 }
 
 // Integral of the node's shape function beyond a flat surface at distance s, by the midpoint rule.
@@ -95,7 +129,11 @@ double filled(ShapeFunction shape, double s) {
   for (int i = 0; i < parts; ++i) {
     const double x = std::abs(s + (i + 0.5) * width);
     double value = 0;
+    constexpr double l = gimp_half_width;
     if (shape == ShapeFunction::Linear) value = x < 1 ? 1 - x : 0;
+    else if (shape == ShapeFunction::Gimp)
+      value = x < l ? 1 - (x * x + l * l) / (2 * l)
+                    : (x < 1 - l ? 1 - x : (x < 1 + l ? (1 + l - x) * (1 + l - x) / (4 * l) : 0));
     else value = x < 0.5 ? 0.75 - x * x : (x < 1.5 ? 0.5 * (1.5 - x) * (1.5 - x) : 0);
     sum += value * width;
   }
@@ -103,13 +141,13 @@ double filled(ShapeFunction shape, double s) {
 }
 
 TEST(SurfaceDistance, InvertsTheFillOfANodeByAFlatSurface) {
-  for (const ShapeFunction shape : {ShapeFunction::Linear, ShapeFunction::QuadraticBSpline})
+  for (const ShapeFunction shape : {ShapeFunction::Linear, ShapeFunction::QuadraticBSpline, ShapeFunction::Gimp})
     for (const double s : {-0.9, -0.5, -0.3, 0.0, 0.2, 0.5, 0.8, 0.95})
       EXPECT_NEAR(surface_distance(shape, filled(shape, s)), s, 1e-6) << static_cast<int>(shape);
 }
 
 TEST(SurfaceDistance, OfTwoSurfacesThatTouchSumsToZero) {
-  for (const ShapeFunction shape : {ShapeFunction::Linear, ShapeFunction::QuadraticBSpline})
+  for (const ShapeFunction shape : {ShapeFunction::Linear, ShapeFunction::QuadraticBSpline, ShapeFunction::Gimp})
     for (const double fill : {0.01, 0.1, 0.3, 0.5, 0.77, 0.95})
       EXPECT_NEAR(surface_distance(shape, fill) + surface_distance(shape, 1 - fill), 0, 1e-14);
 }

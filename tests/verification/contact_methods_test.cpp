@@ -25,7 +25,8 @@ class Methods : public testing::TestWithParam<Choice> {};
 std::string name_of(const testing::TestParamInfo<Choice>& info) {
   const auto [method, shape, order] = info.param;
   const char* const orders[] = {"First", "Last", "LastAsIs"};
-  return method_of(method) + (shape == OGIVE_SHAPE_LINEAR ? "_linear_" : "_bspline_") + orders[order];
+  const char* shapes[] = {"_linear_", "_bspline_", "_gimp_"};
+  return method_of(method) + shapes[shape] + orders[order];
 }
 
 const auto all_methods = testing::Range(0, static_cast<int>(ogive_contact_method_count()));
@@ -96,6 +97,10 @@ INSTANTIATE_TEST_SUITE_P(Contact, Methods,
                          testing::Combine(all_methods,
                                           testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
                                           testing::Values(OGIVE_UPDATE_STRESS_FIRST, OGIVE_UPDATE_STRESS_LAST)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(ContactGimp, Methods,
+                         testing::Combine(all_methods, testing::Values(OGIVE_SHAPE_GIMP),
+                                          testing::Values(OGIVE_UPDATE_STRESS_FIRST)),
                          name_of);
 // With trilinear functions that order breaks down at once; see below.
 INSTANTIATE_TEST_SUITE_P(ContactLastAsIs, Methods,

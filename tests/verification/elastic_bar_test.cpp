@@ -78,5 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
         Scheme{"LinearPersistent", OGIVE_SHAPE_LINEAR, OGIVE_TRANSFER_FLIP, 0.8, persistent, 0.018, 0.03, 0.002},
         Scheme{"BSplinePersistent", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_FLIP, 0.8, persistent, 0.018, 0.03, 0.002},
         Scheme{"BSplineAffinePersistent", OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_TRANSFER_AFFINE_FLIP, 0.5, persistent, 0.018,
-               0.03, 0.002}),
+               0.03, 0.002},
+        Scheme{"GimpSecond", OGIVE_SHAPE_GIMP, OGIVE_TRANSFER_FLIP, 0.8, second, 0.01, 0.02, 0.06},
+        Scheme{"GimpPersistent", OGIVE_SHAPE_GIMP, OGIVE_TRANSFER_FLIP, 0.8, persistent, 0.018, 0.03, 0.002}),
     [](const auto& info) { return info.param.name; });

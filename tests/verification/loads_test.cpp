@@ -168,8 +168,8 @@ TEST_P(Loads, PrescribedVelocityStretchesABarAndReportsTheForceThatItTakes) {
   EXPECT_NEAR(result(scene, hold).work, 0, 1e-3 * ledger.external_work);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Loads, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
-                         [](const auto& info) { return info.param == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline"; });
+INSTANTIATE_TEST_SUITE_P(Shapes, Loads, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
+                         [](const auto& info) { return shape_name(info.param); });
 
 // A loaded scene with everything that a save must carry.
 struct LoadedScene : Scene {

@@ -39,7 +39,7 @@ class Momentum : public testing::TestWithParam<Choice> {};
 std::string name_of(const testing::TestParamInfo<Choice>& info) {
   const auto [method, detection, shape, friction, normal] = info.param;
   return std::string(method == OGIVE_CONTACT_HUANG_FIRST ? "First" : "Second") +
-         (detection == OGIVE_DETECTION_GAP ? "Gap" : "SharedNode") + (shape == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline") +
+         (detection == OGIVE_DETECTION_GAP ? "Gap" : "SharedNode") + shape_name(shape) +
          (friction > 0 ? "Friction" : "Smooth") + (normal == OGIVE_NORMAL_AVERAGE ? "Average" : "Master");
 }
 
@@ -68,7 +68,7 @@ TEST_P(Momentum, OfTwoCubesOfUnequalDensityThatCollideObliquelyIsKept) {
 INSTANTIATE_TEST_SUITE_P(Contact, Momentum,
                          testing::Combine(testing::Values(OGIVE_CONTACT_HUANG_FIRST, OGIVE_CONTACT_HUANG_SECOND),
                                           testing::Values(OGIVE_DETECTION_SHARED_NODE, OGIVE_DETECTION_GAP),
-                                          testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
+                                          testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
                                           testing::Values(0.0, 0.3),
                                           testing::Values(OGIVE_NORMAL_AVERAGE, OGIVE_NORMAL_MASTER)),
                          name_of);
@@ -119,5 +119,6 @@ TEST_P(ThreeBodies, ThatMeetAtANodeKeepTheirMomentumWhateverTheirOrder) {
   EXPECT_LE(of_order, 1e-14);  // measured 0
 }
 
-INSTANTIATE_TEST_SUITE_P(Contact, ThreeBodies, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
-                         [](const auto& info) { return info.param == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline"; });
+INSTANTIATE_TEST_SUITE_P(Contact, ThreeBodies,
+                         testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
+                         [](const auto& info) { return shape_name(info.param); });

@@ -261,5 +261,5 @@ TEST_P(PlateImpact, OfAPlasticPistonAt100MetresPerSecondMakesAPrecursorAndAPlast
   expect_relative("particle_velocity", behind.velocity + 100, 100, 0.005);
 }
 
-INSTANTIATE_TEST_SUITE_P(Exact, PlateImpact, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
-                         [](const auto& info) { return info.param == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline"; });
+INSTANTIATE_TEST_SUITE_P(Exact, PlateImpact, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
+                         [](const auto& info) { return shape_name(info.param); });

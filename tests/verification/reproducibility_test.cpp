@@ -46,5 +46,5 @@ TEST_P(Reproducibility, AWorldSavedAtARandomStepAndLoadedGoesOnToTheSameBits) {
   expect_same_bits(straight, first);
 }
 
-INSTANTIATE_TEST_SUITE_P(Impact, Reproducibility, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
-                         [](const auto& info) { return info.param == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline"; });
+INSTANTIATE_TEST_SUITE_P(Impact, Reproducibility, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
+                         [](const auto& info) { return shape_name(info.param); });

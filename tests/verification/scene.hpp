@@ -30,6 +30,11 @@ inline void measured(const std::string& name, double value) {
   std::printf("  measured %s = %s\n", name.c_str(), text);
 }
 
+// For the names of tests that take each shape function.
+inline std::string shape_name(std::int32_t shape) {
+  return shape == OGIVE_SHAPE_LINEAR ? "Linear" : shape == OGIVE_SHAPE_GIMP ? "Gimp" : "BSpline";
+}
+
 inline ogive_material_def material_def(double density) {
   ogive_material_def def;
   ogive_material_def_init(&def, sizeof def);

@@ -55,7 +55,7 @@ void expect_same(const Scene& whole, const Scene& part, int share, double tolera
 using Choice = std::tuple<std::int32_t, std::int32_t>;
 std::string name_of(const testing::TestParamInfo<Choice>& info) {
   const char* methods[] = {"SingleField", "First", "Second"};
-  return std::string(std::get<0>(info.param) == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline") +
+  return shape_name(std::get<0>(info.param)) +
          methods[std::get<1>(info.param)];
 }
 
@@ -95,7 +95,7 @@ TEST_P(PartialModel, QuarterOfACentralImpactIsTheFullModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Symmetry, PartialModel,
-                         testing::Combine(testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
+                         testing::Combine(testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
                                           testing::Values(OGIVE_CONTACT_SINGLE_FIELD, OGIVE_CONTACT_HUANG_FIRST,
                                                           OGIVE_CONTACT_HUANG_SECOND)),
                          name_of);

@@ -116,7 +116,7 @@ TEST_P(EveryTransfer, OfAnElasticImpactKeepsMomentumAndBooksWhatItTakes) {
   EXPECT_EQ(l.transfer_dissipation, two.ledger().transfer_dissipation);
 }
 
-constexpr std::int32_t hat = OGIVE_SHAPE_LINEAR, spline = OGIVE_SHAPE_QUADRATIC_BSPLINE;
+constexpr std::int32_t hat = OGIVE_SHAPE_LINEAR, spline = OGIVE_SHAPE_QUADRATIC_BSPLINE, gimp = OGIVE_SHAPE_GIMP;
 INSTANTIATE_TEST_SUITE_P(
     Transfer, EveryTransfer,
     testing::Values(Scheme{"LinearFlip", hat, OGIVE_TRANSFER_FLIP, OGIVE_UPDATE_STRESS_FIRST},
@@ -128,7 +128,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Scheme{"BSplineFlipStressLast", spline, OGIVE_TRANSFER_FLIP, OGIVE_UPDATE_STRESS_LAST},
                     Scheme{"BSplineAffineFlip", spline, OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_UPDATE_STRESS_FIRST},
                     Scheme{"BSplineAffineFlipStressLast", spline, OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_UPDATE_STRESS_LAST},
-                    Scheme{"BSplineApic", spline, OGIVE_TRANSFER_APIC, OGIVE_UPDATE_STRESS_FIRST}),
+                    Scheme{"BSplineApic", spline, OGIVE_TRANSFER_APIC, OGIVE_UPDATE_STRESS_FIRST},
+                    Scheme{"GimpFlip", gimp, OGIVE_TRANSFER_FLIP, OGIVE_UPDATE_STRESS_FIRST},
+                    Scheme{"GimpFlipStressLast", gimp, OGIVE_TRANSFER_FLIP, OGIVE_UPDATE_STRESS_LAST},
+                    Scheme{"GimpAffineFlip", gimp, OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_UPDATE_STRESS_FIRST},
+                    Scheme{"GimpAffineFlipStressLast", gimp, OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_UPDATE_STRESS_LAST},
+                    Scheme{"GimpApic", gimp, OGIVE_TRANSFER_APIC, OGIVE_UPDATE_STRESS_FIRST}),
     name_of);
 
 // A free elastic block that breathes is damped by every transfer but FLIP. Nothing else happens to it, so that what the ledger

@@ -99,5 +99,5 @@ TEST_P(Xpic, OfAHalfModelIsThatOfTheFullOneAndThreadsDoNotMatter) {
   EXPECT_NEAR(half.ledger().internal * 2, whole.ledger().internal, 1e-10 * whole.ledger().internal);
 }
 
-INSTANTIATE_TEST_SUITE_P(Transfer, Xpic, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE),
-                         [](const auto& info) { return info.param == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline"; });
+INSTANTIATE_TEST_SUITE_P(Transfer, Xpic, testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
+                         [](const auto& info) { return shape_name(info.param); });
