@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -495,18 +496,15 @@ void check_count(const BodyState& body, const Field& field, std::int64_t count) 
 // Calls put(rank of the particle, place) for each particle; the rank counts numbers in ascending order.
 template <class Put>
 void in_order_of_number(const BodyState& body, Put&& put) {
-  std::int32_t highest = -1;
-  for (const std::int32_t n : body.number) highest = std::max(highest, n);
-  std::vector<std::int32_t> rank;
-  if (highest + 1 != body.particles) {  // some numbers are gone
-    rank.assign(static_cast<std::size_t>(highest) + 2, 0);
-    for (const std::int32_t n : body.number)
-      if (n >= 0) rank[static_cast<std::size_t>(n) + 1] = 1;
-    for (std::size_t n = 1; n < rank.size(); ++n) rank[n] += rank[n - 1];
+  std::vector<std::int32_t> present;  // only where some numbers are gone: otherwise the number is the rank
+  if (std::any_of(body.number.begin(), body.number.end(), [&](std::int32_t n) { return n >= body.particles; })) {
+    std::copy_if(body.number.begin(), body.number.end(), std::back_inserter(present), [](std::int32_t n) { return n >= 0; });
+    std::sort(present.begin(), present.end());
   }
   for (std::int64_t p = 0; p < body.padded; ++p) {
     const std::int32_t n = body.number[p];
-    if (n >= 0) put(rank.empty() ? n : rank[static_cast<std::size_t>(n)], p);
+    if (n < 0) continue;
+    put(present.empty() ? n : std::lower_bound(present.begin(), present.end(), n) - present.begin(), p);
   }
 }
 
@@ -1512,7 +1510,7 @@ ogive_status ogive_world_load(ogive_world* world, const ogive_reader* reader) {
   return guarded(world, [&] {
     require_not_advancing(world, "ogive_world_load");
     if (world->stage != Stage::Building || world->has_grid || !world->model.materials.empty() || !world->model.loads.empty() ||
-        !world->model.clamps.empty())
+        !world->model.clamps.empty() || !world->model.walls.empty())
       throw Error(ErrorKind::State, "ogive_world_load: the world must be fresh from ogive_world_create");
     require_pointer(reader, "reader");
     if (!reader->find || !reader->get) refuse("reader.find and reader.get: must not be NULL");

@@ -87,7 +87,9 @@ std::string text_of(const std::filesystem::path& file, const char* expected) {
 /// Tables are merged, everything else of `from` replaces what `to` has. Moved, not copied: a copy forgets where it was
 /// written.
 void merge(toml::table& to, toml::table&& from) {
-  for (auto&& [key, value] : from) {
+  for (auto&& entry : from) {
+    const toml::key& key = entry.first;  // by name: clang 14 lets no lambda take part of a structured binding
+    toml::node& value = entry.second;
     toml::table* const inner = to.get(key) ? to.get(key)->as_table() : nullptr;
     if (inner && value.is_table()) {
       merge(*inner, std::move(*value.as_table()));

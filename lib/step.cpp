@@ -11,6 +11,7 @@
 #include <string>
 
 #include "boundary/boundary.hpp"
+#include "breakdown.hpp"
 #include "contact/contact.hpp"
 #include "contact/occupied.hpp"
 #include "error.hpp"
@@ -103,6 +104,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   state.last_time_step = dt;
   ++state.steps;
   state.particle_steps += state.particle_count();
+  check_speeds(model, state);
   state.stable_time_step = stable_time_step(model, state, workspace);  // (35)
 }
 
@@ -286,14 +288,11 @@ void update_stress(const Model& model, State& state, Workspace& workspace, doubl
     if (sums.failed_particles > 0 && totals.first_failure_time < 0) totals.first_failure_time = state.time + dt;
     totals.failed_particles += sums.failed_particles;
     if (sums.bad_particle >= 0) {
-      const BodyState& body = state.bodies[b];
-      const double* x = &body.position[4 * sums.bad_particle];
-      throw Error(ErrorKind::Numerical,
-                  "body \"" + model.bodies[b].name + "\": particle " + std::to_string(body.number[sums.bad_particle]) +
-                      " at (" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) +
-                      "), time " + std::to_string(state.time) + ": volume ratio must be positive and finite, got " +
-                      std::to_string(body.volume_ratio[sums.bad_particle]) +
-                      "; a smaller time_step_factor may help");
+      const double ratio = state.bodies[b].volume_ratio[sums.bad_particle];
+      throw breakdown(model, state, b, sums.bad_particle,
+                      "volume ratio must be positive and finite, got " + std::to_string(ratio),
+                      ratio < 1 ? "it was crushed in one step: a smaller time_step_factor may help"
+                                : "torn or not a number, from a time step that is too large or data of no real material");
     }
   }
 }

@@ -379,9 +379,11 @@ class CoupledNodes {
       }
       for (std::size_t r = 0; r < rigid_.size(); ++r)
         if (!rigid_[r].prescribed) push(rigid_[r], impulse[r], moment[r]);
-      for (const auto& [contacts, node] : nodes_)
+      for (const auto& [contacts, node] : nodes_) {
+        const Vector3& place = node->place;
         for_free_rigid(*contacts, *node,
-                       [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(node->place); });
+                       [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(place); });
+      }
       if (worst <= coupled_tolerance * scale) break;
     }
     for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node, rigid_);

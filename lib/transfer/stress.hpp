@@ -51,16 +51,16 @@ static_assert(group_padding % law_width == 0, "groups are padded to the law's wi
 
 template <bool plastic, bool hyperelastic>
 OGIVE_INLINE void prefetch_scalars(const KernelParticles& particles, std::int64_t p) {
-  for (double* const component : particles.stress) prefetch(component + p);
-  prefetch(particles.volume_ratio + p);
-  prefetch(particles.energy + p);
+  for (double* const component : particles.stress) prefetch(component, p);
+  prefetch(particles.volume_ratio, p);
+  prefetch(particles.energy, p);
   if constexpr (plastic) {
-    prefetch(particles.plastic_strain + p);
-    prefetch(particles.yield_stress + p);
-    prefetch(particles.temperature + p);
+    prefetch(particles.plastic_strain, p);
+    prefetch(particles.yield_stress, p);
+    prefetch(particles.temperature, p);
   }
   if constexpr (hyperelastic)
-    for (double* const component : particles.deformation) prefetch(component + p);
+    for (double* const component : particles.deformation) prefetch(component, p);
 }
 
 // Eq. (31) by itself.
