@@ -2,9 +2,9 @@
 // built on numbers that cannot be.
 //
 // After each step, with c the fastest wave of the materials at rest and v the fastest body at the start:
-//   runaway    a particle is faster than 10 (c + v), and than 10 (c + median speed of its body), so that a body that loads have
-//              made fast as a whole is none
-//   collapse   the fastest wave, with the speed at which the grid moves, is above 1000 (c + v) and 1000 (c + fastest particle)
+//   runaway    a particle is faster than 10 (c + v), and than 10 (c + v + w), w being what nine tenths of its body
+//              exceed, so that a body that loads have made fast as a whole is none
+//   collapse   the fastest wave, with the speed at which the grid moves, is above 100 (c + v + fastest particle)
 // Both compare speeds, hence hold in any units and on any grid. A shock makes waves a few times faster, a jet is a few times
 // faster than the impact: what lies beyond these bounds no material does. That a particle is not a number, is turned inside out
 // (stress update) or is outside the domain (binning) is found where it happens; here are the words for it.
@@ -19,7 +19,7 @@
 
 namespace ogive {
 
-constexpr double runaway_factor = 10, collapse_factor = 1000;
+constexpr double runaway_factor = 10, collapse_factor = 100;
 
 // "body "rod": particle 17 at (1, 2, 3), step 120, time 0.5: WHAT; CAUSE". `particle`: its place in the body's arrays.
 Error breakdown(const Model& model, const State& state, int body, std::int64_t particle, const std::string& what,

@@ -8,7 +8,7 @@ namespace {
 
 using namespace fuzz;
 
-constexpr int kMostParticles = 3000;  // of all bodies: larger worlds find nothing that small ones do not
+constexpr int kMostParticles = 800;  // of all bodies: larger worlds find nothing that small ones do not
 
 void fill3(Input& input, double (&v)[3], double usual) {
   for (double& c : v) c = input.about(usual) * (input.one_in(2) ? -1 : 1);

@@ -41,7 +41,7 @@ def run(target, arguments, log):
     corpus = work / "corpus"
     corpus.mkdir(parents=True, exist_ok=True)
     command = [arguments.build_dir / "bin" / f"ogive_{target}_fuzz", corpus, ROOT / "tests/fuzz/corpus" / target,
-               f"-max_total_time={arguments.seconds}", f"-max_len={LENGTH[target]}", "-timeout=20", "-rss_limit_mb=3000",
+               f"-max_total_time={arguments.seconds}", f"-max_len={LENGTH[target]}", "-timeout=120", "-rss_limit_mb=3000",
                "-print_final_stats=1", f"-artifact_prefix={work}/", f"-seed={arguments.seed}"]
     words = ROOT / "tests/fuzz" / f"{target}.dict"
     if words.exists():
