@@ -62,7 +62,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   if (xpic) filter_velocities(model, state, workspace);          // v* of XPIC
   if (contact) find_contacts(model, state, workspace);           // (10), the gap
   workspace.changing = true;
-  if (contact) start_contact(state, workspace, dt,               // (23)-(25)
+  if (contact) start_contact(model, state, workspace, dt,               // (23)-(25)
                              stress_first ? StartUse::MotionAndStrain : StartUse::Motion);
   if (stress_first) {
     unfold_velocity(workspace);
@@ -84,6 +84,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   unfold_motion(state, workspace);
   if (contact) book_kept_start(state, workspace);
   if (xpic) filtered_velocities(workspace);
+  book_grid_velocity(model, state, workspace);
   accelerations(state, workspace, dt);
   measure_external_force(model, state, workspace, dt);
   update_velocity_and_position(model, state, workspace, dt);     // (34), (33)
@@ -94,7 +95,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
     fold_momentum(workspace);
     nodal_velocities(workspace);
     set_rigid_velocities(model, workspace, false);
-    if (contact) start_contact(state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
+    if (contact) start_contact(model, state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
     unfold_velocity(workspace);
   }
   if (!stress_first) update_stress(model, state, workspace, dt); // (29), (30), stress; moves the particles (33)
@@ -231,6 +232,14 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
       }
     }
     unfold_filter(workspace);
+  }
+  workspace.filter_momentum = {};
+  if (workspace.faces.empty()) return;
+  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+    if (workspace.slots[s].rigid >= 0) continue;
+    for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i)
+      for (int c = 0; c < 3; ++c)
+        workspace.filter_momentum[c] += workspace.nodes[i].v[3] * (workspace.filter[i].v[c] - workspace.nodes[i].v[c]);
   }
 }
 

@@ -143,6 +143,17 @@ TEST(Run, output_that_cannot_be_written_gives_code_4) {
   EXPECT_EQ(names_in(scratch.path()), std::vector<std::string>{"file"});
 }
 
+TEST(Run, ends_when_everything_has_left_the_domain) {
+  const ScratchDirectory scratch;
+  ASSERT_EQ(run_program(scratch.path(), {"run", scene_file(), "-o", "results", "--until", "5", "--set",
+                                         "bodies.left.velocity=[0,0,900]", "--set", "bodies.right.velocity=[0,0,900]"})
+                .exit_code,
+            0);
+  const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
+  EXPECT_EQ(summary.at("stop_reason"), "empty");
+  EXPECT_EQ(summary.at("particles"), 0);
+}
+
 TEST(Run, max_steps_ends_it) {
   const ScratchDirectory scratch;
   ASSERT_EQ(run_program(scratch.path(), {"run", scene_file(), "-o", "results", "--set", "stop.max_steps=7"}).exit_code,
