@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -21,6 +22,7 @@
 
 #include "archive.hpp"
 #include "audit.hpp"
+#include "change.hpp"
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
 #include "error.hpp"
@@ -34,13 +36,14 @@
 
 using namespace ogive;
 
-enum class Stage { Building, Ready, Broken };
+enum class Stage { Building, Ready, Reopened, Broken };
 
 struct ogive_world {
   Stage stage = Stage::Building;
   Model model;
   State state;
   Workspace workspace;
+  std::unique_ptr<Model> before;  // while reopened: the model as it was
   bool has_grid = false;
   bool advancing = false;  // inside ogive_world_advance: the callback may not step
   ogive_log_callback log = nullptr;
@@ -127,7 +130,14 @@ void require_stage(const ogive_world* world, Stage stage, const char* call) {
     throw Error(ErrorKind::State, name + ": the world must be prepared first (ogive_world_prepare)");
   if (world->stage == Stage::Broken)
     throw Error(ErrorKind::State, name + ": the run has broken down; its state can be looked at and saved, not advanced");
+  if (world->stage == Stage::Reopened)
+    throw Error(ErrorKind::State, name + ": the world is reopened for changes; ogive_world_prepare ends them");
   throw Error(ErrorKind::State, name + ": the world is prepared and its model frozen");
+}
+
+// For what may also be changed in a run.
+void require_changeable(const ogive_world* world, const char* call) {
+  if (world->stage != Stage::Reopened) require_stage(world, Stage::Building, call);
 }
 
 void require_prepared(const ogive_world* world, const char* call) {
@@ -517,18 +527,15 @@ void check_count(const BodyState& body, const Field& field, std::int64_t count) 
 // Calls put(rank of the particle, place) for each particle; the rank counts numbers in ascending order.
 template <class Put>
 void in_order_of_number(const BodyState& body, Put&& put) {
-  std::int32_t highest = -1;
-  for (const std::int32_t n : body.number) highest = std::max(highest, n);
-  std::vector<std::int32_t> rank;
-  if (highest + 1 != body.particles) {  // some numbers are gone
-    rank.assign(static_cast<std::size_t>(highest) + 2, 0);
-    for (const std::int32_t n : body.number)
-      if (n >= 0) rank[static_cast<std::size_t>(n) + 1] = 1;
-    for (std::size_t n = 1; n < rank.size(); ++n) rank[n] += rank[n - 1];
+  std::vector<std::int32_t> present;  // only where some numbers are gone: otherwise the number is the rank
+  if (std::any_of(body.number.begin(), body.number.end(), [&](std::int32_t n) { return n >= body.particles; })) {
+    std::copy_if(body.number.begin(), body.number.end(), std::back_inserter(present), [](std::int32_t n) { return n >= 0; });
+    std::sort(present.begin(), present.end());
   }
   for (std::int64_t p = 0; p < body.padded; ++p) {
     const std::int32_t n = body.number[p];
-    if (n >= 0) put(rank.empty() ? n : rank[static_cast<std::size_t>(n)], p);
+    if (n < 0) continue;
+    put(present.empty() ? n : std::lower_bound(present.begin(), present.end(), n) - present.begin(), p);
   }
 }
 
@@ -774,7 +781,7 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
 
 ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_def* def) {
   return guarded(world, [&] {
-    require_stage(world, Stage::Building, "ogive_world_set_numerics");
+    require_changeable(world, "ogive_world_set_numerics");
     const ogive_numerics_def full = complete(def, "def", ogive_numerics_def_init);
     Model trial;
     trial.numerics.shape_function = static_cast<ShapeFunction>(full.shape_function);
@@ -919,46 +926,62 @@ void ogive_material_def_init(ogive_material_def* def, size_t size) {
   initialise(def, size, full);
 }
 
+static Material material_from(const std::string& name, const ogive_material_def* def) {
+  const ogive_material_def d = complete(def, "def", ogive_material_def_init);
+  Material m;
+  m.name = name;
+  m.strength = static_cast<Strength>(d.strength);
+  m.eos = static_cast<EquationOfState>(d.eos);
+  m.failure = static_cast<Failure>(d.failure);
+  m.density = d.density;
+  m.youngs_modulus = d.youngs_modulus;
+  m.poisson_ratio = d.poisson_ratio;
+  m.bulk_modulus = d.bulk_modulus;
+  m.shear_modulus = d.shear_modulus;
+  m.yield_stress = d.yield_stress;
+  m.hardening_modulus = d.hardening_modulus;
+  m.hardening_exponent = d.hardening_exponent;
+  m.rate_coefficient = d.rate_coefficient;
+  m.reference_strain_rate = d.reference_strain_rate;
+  m.thermal_exponent = d.thermal_exponent;
+  m.melt_temperature = d.melt_temperature;
+  m.room_temperature = d.room_temperature;
+  m.specific_heat = d.specific_heat;
+  m.taylor_quinney = d.taylor_quinney;
+  m.eos_sound_speed = d.eos_sound_speed;
+  m.eos_slope = d.eos_slope;
+  m.gruneisen = d.gruneisen;
+  m.failure_strain = d.failure_strain;
+  m.viscosity_linear = d.viscosity_linear;
+  m.viscosity_quadratic = d.viscosity_quadratic;
+  try {
+    m.validate();
+  } catch (const Error& error) {
+    throw Error(error.kind(), "material \"" + m.name + "\": " + error.what());
+  }
+  return m;
+}
+
 ogive_status ogive_material_add(ogive_world* world, const char* name, const ogive_material_def* def,
                                 ogive_material_id* id) {
   return guarded(world, [&] {
     require_stage(world, Stage::Building, "ogive_material_add");
-    Material m;
-    m.name = checked_name(name, "material");
-    const ogive_material_def d = complete(def, "def", ogive_material_def_init);
+    const std::string material_name = checked_name(name, "material");
     for (const Material& other : world->model.materials)
-      if (other.name == m.name) refuse("material \"" + m.name + "\": name is already taken");
-    m.strength = static_cast<Strength>(d.strength);
-    m.eos = static_cast<EquationOfState>(d.eos);
-    m.failure = static_cast<Failure>(d.failure);
-    m.density = d.density;
-    m.youngs_modulus = d.youngs_modulus;
-    m.poisson_ratio = d.poisson_ratio;
-    m.bulk_modulus = d.bulk_modulus;
-    m.shear_modulus = d.shear_modulus;
-    m.yield_stress = d.yield_stress;
-    m.hardening_modulus = d.hardening_modulus;
-    m.hardening_exponent = d.hardening_exponent;
-    m.rate_coefficient = d.rate_coefficient;
-    m.reference_strain_rate = d.reference_strain_rate;
-    m.thermal_exponent = d.thermal_exponent;
-    m.melt_temperature = d.melt_temperature;
-    m.room_temperature = d.room_temperature;
-    m.specific_heat = d.specific_heat;
-    m.taylor_quinney = d.taylor_quinney;
-    m.eos_sound_speed = d.eos_sound_speed;
-    m.eos_slope = d.eos_slope;
-    m.gruneisen = d.gruneisen;
-    m.failure_strain = d.failure_strain;
-    m.viscosity_linear = d.viscosity_linear;
-    m.viscosity_quadratic = d.viscosity_quadratic;
-    try {
-      m.validate();
-    } catch (const Error& error) {
-      throw Error(error.kind(), "material \"" + m.name + "\": " + error.what());
-    }
-    world->model.materials.push_back(std::move(m));
+      if (other.name == material_name) refuse("material \"" + material_name + "\": name is already taken");
+    world->model.materials.push_back(material_from(material_name, def));
     if (id) id->index = static_cast<std::int32_t>(world->model.materials.size()) - 1;
+  });
+}
+
+ogive_status ogive_material_change(ogive_world* world, ogive_material_id id, const ogive_material_def* def) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Reopened, "ogive_material_change");
+    if (id.index < 0 || id.index >= static_cast<std::int32_t>(world->model.materials.size()))
+      refuse("material: must be 0.." + std::to_string(static_cast<int>(world->model.materials.size()) - 1) + ", got " +
+             std::to_string(id.index));
+    Material& material = world->model.materials[static_cast<std::size_t>(id.index)];
+    material = material_from(material.name, def);
   });
 }
 
@@ -1034,7 +1057,7 @@ static ContactRule rule_from(const ogive_world* world, const ogive_contact_def& 
 
 ogive_status ogive_world_set_contact(ogive_world* world, const ogive_contact_def* def) {
   return guarded(world, [&] {
-    require_stage(world, Stage::Building, "ogive_world_set_contact");
+    require_changeable(world, "ogive_world_set_contact");
     const ogive_contact_def full = complete(def, "def", ogive_contact_def_init);
     world->model.contact = rule_from(world, full);
   });
@@ -1042,7 +1065,7 @@ ogive_status ogive_world_set_contact(ogive_world* world, const ogive_contact_def
 
 ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id a, ogive_body_id b, const ogive_contact_def* def) {
   return guarded(world, [&] {
-    require_stage(world, Stage::Building, "ogive_contact_set_pair");
+    require_changeable(world, "ogive_contact_set_pair");
     body_of(world, a);
     body_of(world, b);
     if (a.index == b.index) refuse("contact pair: must be two bodies, got body " + std::to_string(a.index) + " twice");
@@ -1133,7 +1156,7 @@ void ogive_stop_def_init(ogive_stop_def* def, size_t size) {
 
 ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def) {
   return guarded(world, [&] {
-    require_stage(world, Stage::Building, "ogive_world_set_stop");
+    require_changeable(world, "ogive_world_set_stop");
     const ogive_stop_def full = complete(def, "def", ogive_stop_def_init);
     require_body_or_none(world, full.body, "stop body");
     if (!(full.settle_window >= 0 && std::isfinite(full.settle_window)))
@@ -1150,19 +1173,51 @@ ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def)
   });
 }
 
+static void require_not_advancing(const ogive_world* world, const char* call) {
+  if (world->advancing)
+    throw Error(ErrorKind::State, std::string(call) + ": not allowed in a callback of ogive_world_advance");
+}
+
+// Ends the changes of a reopened world.
+static void prepare_changed(ogive_world* world) {
+  Model changed = world->model;
+  changed.complete();
+  require_consistent_change(*world->before, changed, world->state);
+  adapt_state(*world->before, changed, world->state);
+  world->model = std::move(changed);
+  *world->before = world->model;  // should the next line fail, what was adapted is not adapted again
+  prepare_state(world->model, world->state, world->workspace);
+  world->before.reset();
+}
+
+ogive_status ogive_world_reopen(ogive_world* world) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Ready, "ogive_world_reopen");
+    require_not_advancing(world, "ogive_world_reopen");
+    world->before = std::make_unique<Model>(world->model);
+    world->stage = Stage::Reopened;
+  });
+}
+
 ogive_status ogive_world_prepare(ogive_world* world) {
   return guarded(world, [&] {
-    require_stage(world, Stage::Building, "ogive_world_prepare");
-    if (!world->has_grid) throw Error(ErrorKind::State, "ogive_world_prepare: the grid must be set (ogive_world_set_grid)");
-    world->model.complete();
-    refuse_overlap(world->model, world->state);
-    select_loaded_particles(world->model, world->state);
-    for (std::size_t i = 0; i < world->model.loads.size(); ++i)
-      if (world->model.loads[i].kind == LoadKind::Traction && !(world->state.loads[i].mass > 0))
-        refuse("load " + std::to_string(i) + ": a traction must meet particles of its body, and none lies in the region");
-    prepare_state(world->model, world->state, world->workspace);
-    world->state.ledger.initial_total = total_energy(world->model, world->state);
-    check_stop(world->model, world->state);
+    if (world->stage == Stage::Reopened) {
+      prepare_changed(world);
+    } else {
+      require_stage(world, Stage::Building, "ogive_world_prepare");
+      if (!world->has_grid)
+        throw Error(ErrorKind::State, "ogive_world_prepare: the grid must be set (ogive_world_set_grid)");
+      world->model.complete();
+      refuse_overlap(world->model, world->state);
+      select_loaded_particles(world->model, world->state);
+      for (std::size_t i = 0; i < world->model.loads.size(); ++i)
+        if (world->model.loads[i].kind == LoadKind::Traction && !(world->state.loads[i].mass > 0))
+          refuse("load " + std::to_string(i) +
+                 ": a traction must meet particles of its body, and none lies in the region");
+      prepare_state(world->model, world->state, world->workspace);
+      world->state.ledger.initial_total = total_energy(world->model, world->state);
+      check_stop(world->model, world->state);
+    }
     const std::string plan = world->log ? describe_plan(world->model, world->state, world->workspace) : "";
     world->stage = Stage::Ready;
     tell_prepared(world, "prepared", plan);
@@ -1219,11 +1274,6 @@ static void step_or_break(ogive_world* world, double dt) {
     throw;
   }
   if (world->log) tell_events(world, before, stop_before);
-}
-
-static void require_not_advancing(const ogive_world* world, const char* call) {
-  if (world->advancing)
-    throw Error(ErrorKind::State, std::string(call) + ": not allowed in a callback of ogive_world_advance");
 }
 
 ogive_status ogive_world_step(ogive_world* world, double dt) {
@@ -1468,14 +1518,8 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
         (field_name == "plastic_strain" ? body.plastic_strain : body.temperature)[p] = *v;
       }
       if (field_name == "plastic_strain" || field_name == "temperature") {
-        double yield = material.yield_stress +
-                       material.hardening_modulus * std::pow(body.plastic_strain[p], material.hardening_exponent);
-        if (material.thermal()) {
-          const double t = (body.temperature[p] - material.room_temperature) /
-                           (material.melt_temperature - material.room_temperature);
-          yield *= 1 - std::pow(std::clamp(t, 0.0, 1.0), material.thermal_exponent);
-        }
-        body.yield_stress[p] = yield;
+        body.yield_stress[p] =
+            material.yield_stress_at(body.plastic_strain[p], material.thermal() ? body.temperature[p] : 0);
       }
     });
     if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
@@ -1520,6 +1564,7 @@ ogive_status ogive_world_attachment(const ogive_world* world, const char* name, 
 ogive_status ogive_world_save(const ogive_world* world, const ogive_writer* writer) {
   return guarded(world, [&] {
     require_prepared(world, "ogive_world_save");
+    if (world->stage == Stage::Reopened) require_stage(world, Stage::Ready, "ogive_world_save");
     if (!require_pointer(writer, "writer").put) refuse("writer.put: must not be NULL");
     // exchange() both reads and writes; a writing archive changes nothing.
     ogive_world* self = const_cast<ogive_world*>(world);
@@ -1535,7 +1580,7 @@ ogive_status ogive_world_load(ogive_world* world, const ogive_reader* reader) {
   return guarded(world, [&] {
     require_not_advancing(world, "ogive_world_load");
     if (world->stage != Stage::Building || world->has_grid || !world->model.materials.empty() || !world->model.loads.empty() ||
-        !world->model.clamps.empty())
+        !world->model.clamps.empty() || !world->model.walls.empty())
       throw Error(ErrorKind::State, "ogive_world_load: the world must be fresh from ogive_world_create");
     require_pointer(reader, "reader");
     if (!reader->find || !reader->get) refuse("reader.find and reader.get: must not be NULL");

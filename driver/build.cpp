@@ -18,9 +18,9 @@ void assign(double (&field)[3], const Vector3& value) { std::copy(value.begin(),
 
 class Builder {
  public:
-  explicit Builder(const Scene& scene) : scene_(scene), world_(make_world()) {}
+  Builder(const Scene& scene, ogive_world* world) : scene_(scene), world_(world) {}
 
-  BuiltWorld build() {
+  std::vector<std::string> build() {
     set_grid();
     set_numerics();
     for (const MaterialScene& material : scene_.materials) add_material(material);
@@ -30,17 +30,37 @@ class Builder {
     for (size_t i = 0; i < scene_.clamps.size(); ++i) add_clamp(i);
     set_stop();
     prepare();
-    return {std::move(world_), std::move(notes_)};
+    return std::move(notes_);
+  }
+
+  void change(const Scene& before) {
+    for (size_t i = 0; i < scene_.materials.size(); ++i) material_ids_.push_back({static_cast<int32_t>(i)});
+    for (size_t i = 0; i < scene_.bodies.size(); ++i) body_ids_.push_back({static_cast<int32_t>(i)});
+    require(ogive_world_reopen(world_), "");
+    set_numerics();
+    for (size_t i = 0; i < scene_.materials.size(); ++i) {
+      const ogive_material_def def = material_def(scene_.materials[i]);
+      require(ogive_material_change(world_, material_ids_[i], &def), "materials." + scene_.materials[i].name);
+    }
+    // A pair that has no rule of its own any more gets the scene's.
+    for (const ContactPairScene& pair : before.contact_pairs) {
+      ContactScene rule = scene_.contact;
+      if (rule.master && *rule.master != pair.bodies[0] && *rule.master != pair.bodies[1]) rule.master.reset();
+      set_pair(pair.bodies, rule, "contact");
+    }
+    set_contact();
+    set_stop();
+    prepare();
   }
 
  private:
   /// Whatever the engine refuses now is the scene's fault, except want of memory and defects.
   void require(ogive_status status, const std::string& path) const {
     if (status == OGIVE_OK) return;
-    std::string message = ogive_world_message(world_.get());
+    std::string message = ogive_world_message(world_);
     if (message.empty()) message = ogive_status_name(status);
     const bool user_can_mend = status != OGIVE_ERROR_MEMORY && status != OGIVE_ERROR_INTERNAL;
-    throw Failure(user_can_mend ? kExitInput : kExitInternal, scene_.place(path) + ": " + message);
+    throw Failure(user_can_mend ? kExitInput : exit_code(status), scene_.place(path) + ": " + message);
   }
 
   ogive_body_id body_id(const std::optional<std::string>& name) const {
@@ -57,7 +77,7 @@ class Builder {
     assign(def.domain_min, scene_.grid.lower);
     assign(def.domain_max, scene_.grid.upper);
     std::copy(scene_.grid.faces.begin(), scene_.grid.faces.end(), def.face);
-    require(ogive_world_set_grid(world_.get(), &def), "grid");
+    require(ogive_world_set_grid(world_, &def), "grid");
   }
 
   void set_numerics() {
@@ -72,10 +92,10 @@ class Builder {
     assign(def.update_order, scene_.numerics.update_order);
     assign(def.pic_fraction, scene_.numerics.pic_fraction);
     assign(def.xpic_order, scene_.numerics.xpic_order);
-    require(ogive_world_set_numerics(world_.get(), &def), "numerics");
+    require(ogive_world_set_numerics(world_, &def), "numerics");
   }
 
-  void add_material(const MaterialScene& material) {
+  static ogive_material_def material_def(const MaterialScene& material) {
     ogive_material_def def;
     ogive_material_def_init(&def, sizeof def);
     def.density = material.density;
@@ -102,8 +122,13 @@ class Builder {
     assign(def.failure_strain, material.failure_strain);
     assign(def.viscosity_linear, material.viscosity_linear);
     assign(def.viscosity_quadratic, material.viscosity_quadratic);
+    return def;
+  }
+
+  void add_material(const MaterialScene& material) {
+    const ogive_material_def def = material_def(material);
     ogive_material_id id{-1};
-    require(ogive_material_add(world_.get(), material.name.c_str(), &def, &id), "materials." + material.name);
+    require(ogive_material_add(world_, material.name.c_str(), &def, &id), "materials." + material.name);
     material_ids_.push_back(id);
   }
 
@@ -129,13 +154,13 @@ class Builder {
       assign(shape.axis, solid->axis);
       assign(shape.reference, solid->reference);
       assign(shape.spacing, solid->spacing);
-      require(ogive_body_add_solid(world_.get(), body.name.c_str(), &def, &shape, &id), path);
+      require(ogive_body_add_solid(world_, body.name.c_str(), &def, &shape, &id), path);
     } else if (const auto* file = std::get_if<ParticleFileShape>(&body.shape)) {
-      require(ogive_body_add_particle_file(world_.get(), body.name.c_str(), &def, file->file.c_str(), &id),
+      require(ogive_body_add_particle_file(world_, body.name.c_str(), &def, file->file.c_str(), &id),
               path + ".particles");
     } else {
       const ParticleList particles = particles_of_mesh(body, path);
-      require(ogive_body_add_particles(world_.get(), body.name.c_str(), &def,
+      require(ogive_body_add_particles(world_, body.name.c_str(), &def,
                                        static_cast<int64_t>(particles.volumes.size()), particles.positions.data(),
                                        particles.volumes.data(), &id),
               path);
@@ -151,7 +176,7 @@ class Builder {
       velocity.insert(velocity.end(), at.velocity.begin(), at.velocity.end());
       angular_velocity.insert(angular_velocity.end(), at.angular_velocity.begin(), at.angular_velocity.end());
     }
-    require(ogive_body_set_motion(world_.get(), id, static_cast<int32_t>(time.size()), time.data(), velocity.data(),
+    require(ogive_body_set_motion(world_, id, static_cast<int32_t>(time.size()), time.data(), velocity.data(),
                                   angular_velocity.data()),
             path + ".motion");
   }
@@ -176,17 +201,16 @@ class Builder {
 
   void set_contact() {
     const ogive_contact_def def = contact_def(scene_.contact);
-    require(ogive_world_set_contact(world_.get(), &def), "contact");
-    for (size_t i = 0; i < scene_.contact_pairs.size(); ++i) {
-      const ContactPairScene& pair = scene_.contact_pairs[i];
-      ogive_contact_def pair_def = contact_def(pair.rule);
-      // Without a name, the first of the two in the scene, as for all pairs.
-      if (pair_def.master.index < 0) {
-        pair_def.master.index = std::min(body_id(pair.bodies[0]).index, body_id(pair.bodies[1]).index);
-      }
-      require(ogive_contact_set_pair(world_.get(), body_id(pair.bodies[0]), body_id(pair.bodies[1]), &pair_def),
-              child_path("contact.pairs", i));
-    }
+    require(ogive_world_set_contact(world_, &def), "contact");
+    for (size_t i = 0; i < scene_.contact_pairs.size(); ++i)
+      set_pair(scene_.contact_pairs[i].bodies, scene_.contact_pairs[i].rule, child_path("contact.pairs", i));
+  }
+
+  void set_pair(const std::array<std::string, 2>& bodies, const ContactScene& rule, const std::string& path) {
+    ogive_contact_def def = contact_def(rule);
+    // Without a name, the first of the two in the scene, as for all pairs.
+    if (def.master.index < 0) def.master.index = std::min(body_id(bodies[0]).index, body_id(bodies[1]).index);
+    require(ogive_contact_set_pair(world_, body_id(bodies[0]), body_id(bodies[1]), &def), path);
   }
 
   void add_wall(size_t index) {
@@ -199,7 +223,7 @@ class Builder {
     assign(def.friction, wall.rule.friction);
     assign(def.detection, wall.rule.detection);
     assign(def.gap_offset, wall.rule.gap_offset);
-    require(ogive_wall_add(world_.get(), &def), child_path("walls", index));
+    require(ogive_wall_add(world_, &def), child_path("walls", index));
   }
 
   void add_clamp(size_t index) {
@@ -212,12 +236,11 @@ class Builder {
     def.radius = clamp.radius;
     def.body = body_id(clamp.body);
     def.axes = clamp.axes;
-    require(ogive_clamp_add(world_.get(), &def), child_path("clamps", index));
+    require(ogive_clamp_add(world_, &def), child_path("clamps", index));
   }
 
   void set_stop() {
     const StopScene& stop = scene_.stop;
-    if (!stop.body) return;
     ogive_stop_def def;
     ogive_stop_def_init(&def, sizeof def);
     def.body = body_id(stop.body);
@@ -225,14 +248,14 @@ class Builder {
     assign(def.settle_tolerance, stop.settle_tolerance);
     assign(def.stop_when_stopped, stop.stop_when_stopped);
     assign(def.stop_when_out, stop.stop_when_out);
-    require(ogive_world_set_stop(world_.get(), &def), "stop");
+    require(ogive_world_set_stop(world_, &def), "stop");
   }
 
   void prepare() {
-    const ogive_status status = ogive_world_prepare(world_.get());
+    const ogive_status status = ogive_world_prepare(world_);
     if (status == OGIVE_OK) return;
     // The message names the bodies that it is about, the last one being the one that was added against the others.
-    const std::string message = ogive_world_message(world_.get());
+    const std::string message = ogive_world_message(world_);
     std::string path;
     size_t latest = 0;
     for (const BodyScene& body : scene_.bodies) {
@@ -247,7 +270,7 @@ class Builder {
   }
 
   const Scene& scene_;
-  World world_;
+  ogive_world* world_;
   std::vector<ogive_material_id> material_ids_;
   std::vector<ogive_body_id> body_ids_;
   std::vector<std::string> notes_;
@@ -255,6 +278,36 @@ class Builder {
 
 }  // namespace
 
-BuiltWorld build_world(const Scene& scene) { return Builder(scene).build(); }
+BuiltWorld build_world(const Scene& scene) {
+  BuiltWorld built{make_world(), {}};
+  built.notes = Builder(scene, built.world.get()).build();
+  return built;
+}
+
+std::vector<std::string> model_changes(const Scene& before, const Scene& after) {
+  const auto must_stay = [&](bool same, const char* what) {
+    if (same) return;
+    throw Failure(kExitInput, after.place(what) + ": cannot be changed by a restart, because the particles of the checkpoint "
+                                                  "stand on it");
+  };
+  must_stay(before.units == after.units, "units");
+  must_stay(before.grid == after.grid, "grid");
+  must_stay(before.bodies == after.bodies, "bodies");
+  must_stay(before.walls == after.walls, "walls");
+  must_stay(before.clamps == after.clamps, "clamps");
+  bool same_list = before.materials.size() == after.materials.size();
+  for (size_t i = 0; same_list && i < before.materials.size(); ++i)
+    same_list = before.materials[i].name == after.materials[i].name;
+  must_stay(same_list, "materials");
+  std::vector<std::string> changes;
+  NumericsScene numerics = after.numerics;
+  numerics.threads = before.numerics.threads;
+  if (numerics != before.numerics) changes.push_back("numerics");
+  if (before.contact != after.contact || before.contact_pairs != after.contact_pairs) changes.push_back("contact");
+  if (before.materials != after.materials) changes.push_back("materials");
+  return changes;
+}
+
+void change_world(const Scene& before, const Scene& after, ogive_world* world) { Builder(after, world).change(before); }
 
 }  // namespace driver

@@ -18,4 +18,13 @@ struct BuiltWorld {
 /// scene.
 BuiltWorld build_world(const Scene& scene);
 
+/// What of the model differs between the scene of a run and another one that is to go on in its place: "numerics", "contact",
+/// "materials". Throws Failure(kExitInput) where it is something that the particles of the run stand on: units, grid, bodies,
+/// walls, clamps, the list of materials.
+std::vector<std::string> model_changes(const Scene& before, const Scene& after);
+
+/// Gives a running world of `before` the numerics, contact, materials and stop condition of `after`. Whatever the engine refuses
+/// as inconsistent is said with its place in the scene.
+void change_world(const Scene& before, const Scene& after, ogive_world* world);
+
 }  // namespace driver

@@ -29,6 +29,7 @@ std::string to_text(const DriverState& state) {
   json["wall_seconds"] = state.wall_seconds;
   json["initial_velocity"] = state.initial_velocity;
   json["last_velocity"] = state.last_velocity;
+  json["changes"] = state.changes;
   return json.dump();
 }
 
@@ -48,6 +49,7 @@ DriverState from_text(const std::string& text) {
   json.at("wall_seconds").get_to(state.wall_seconds);
   json.at("initial_velocity").get_to(state.initial_velocity);
   json.at("last_velocity").get_to(state.last_velocity);
+  if (json.contains("changes")) json.at("changes").get_to(state.changes);  // not in checkpoints of 0.2.0
   return state;
 }
 
@@ -117,6 +119,16 @@ void write_checkpoint(ogive_world* world, const std::filesystem::path& file, con
   require_ok(ogive_world_attach(world, kStateAttachment, state_text.data(), static_cast<int64_t>(state_text.size())),
              world);
   require_ok(ogive_checkpoint_write(world, file.c_str()), world);
+}
+
+void remove_later_checkpoints(const std::filesystem::path& directory, int64_t steps) {
+  const std::vector<int64_t> found = checkpoints_in(directory);
+  for (auto at = found.rbegin(); at != found.rend() && *at > steps; ++at) {
+    std::error_code problem;
+    const std::filesystem::path file = directory / checkpoint_name(*at);
+    std::filesystem::remove(file, problem);
+    if (problem) throw Failure(kExitFile, file.string() + ": cannot be removed: " + problem.message());
+  }
 }
 
 void remove_old_checkpoints(const std::filesystem::path& directory, int64_t steps, int64_t keep) {

@@ -30,6 +30,7 @@ struct DriverState {
   // Of each body by name: the velocity at the start, and the last one while any of it was in the domain.
   std::map<std::string, std::array<double, 3>> initial_velocity;
   std::map<std::string, std::array<double, 3>> last_velocity;
+  std::vector<std::string> changes;  // what restarts changed, with the step: "step 1200: --set contact.friction=0.1"
 };
 
 std::string checkpoint_name(int64_t steps);
@@ -37,6 +38,8 @@ std::string checkpoint_name(int64_t steps);
 /// Writes the world with the scene and the state attached.
 void write_checkpoint(ogive_world* world, const std::filesystem::path& file, const std::string& scene_text,
                       const DriverState& state);
+/// Removes checkpoints of later steps, newest first.
+void remove_later_checkpoints(const std::filesystem::path& directory, int64_t steps);
 /// Removes all but the last `keep` checkpoints in the directory that are not later than `steps`.
 void remove_old_checkpoints(const std::filesystem::path& directory, int64_t steps, int64_t keep);
 

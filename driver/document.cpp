@@ -86,11 +86,13 @@ std::string text_of(const std::filesystem::path& file, const char* expected) {
 
 /// Tables are merged, everything else of `from` replaces what `to` has. Moved, not copied: a copy forgets where it was
 /// written.
-void merge(toml::table& to, toml::table&& from) {
-  for (auto&& [key, value] : from) {
+void merge_tables(toml::table& to, toml::table&& from) {
+  for (auto&& entry : from) {
+    const toml::key& key = entry.first;  // by name: clang 14 lets no lambda take part of a structured binding
+    toml::node& value = entry.second;
     toml::table* const inner = to.get(key) ? to.get(key)->as_table() : nullptr;
     if (inner && value.is_table()) {
-      merge(*inner, std::move(*value.as_table()));
+      merge_tables(*inner, std::move(*value.as_table()));
     } else {
       to.erase(key);
       value.visit([&](auto& concrete) { to.insert(key, std::move(concrete)); });
@@ -102,20 +104,24 @@ void merge(toml::table& to, toml::table&& from) {
 
 Document Document::from_file(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   Document document = from_text(text_of(file, "a scene file (TOML)"), file.string());
+  document.merge(settings);
+  return document;
+}
+
+void Document::merge(const std::vector<std::string>& settings) {
   for (const std::string& setting : settings) {
     if (!setting.empty() && setting.front() == '@') {
       const std::string name = setting.substr(1);
-      document.merged_.push_back(name);
-      merge(document.root_, parsed(text_of(name, "a file of settings (TOML) after \"--set @\""), name));
+      merged_.push_back(name);
+      merge_tables(root_, parsed(text_of(name, "a file of settings (TOML) after \"--set @\""), name));
       continue;
     }
     const size_t equals = setting.find('=');
     if (equals == std::string::npos) {
       throw Failure(kExitInput, "--set " + setting + ": expected path.to.key=value, got no \"=\"");
     }
-    document.set(setting.substr(0, equals), setting.substr(equals + 1), "--set " + setting);
+    set(setting.substr(0, equals), setting.substr(equals + 1), "--set " + setting);
   }
-  return document;
 }
 
 Document Document::from_text(const std::string& text, const std::string& name) {

@@ -12,11 +12,13 @@ namespace driver {
 
 class Document {
  public:
-  /// Reads `file` and merges settings into it, in order: "path.to.key=value", or "@file" for all values of a TOML file.
+  /// Reads `file` and merges settings into it.
   static Document from_file(const std::filesystem::path& file, const std::vector<std::string>& settings);
   /// Reads TOML text; `name` stands for it in messages.
   static Document from_text(const std::string& text, const std::string& name);
 
+  /// Merges settings into it, in order: "path.to.key=value", or "@file" for all values of a TOML file.
+  void merge(const std::vector<std::string>& settings);
   /// Gives the value at a dotted path; missing tables on the way are made. `origin` stands for it in messages.
   void set(const std::string& path, const std::string& value_text, const std::string& origin);
 

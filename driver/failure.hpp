@@ -8,11 +8,12 @@ namespace driver {
 
 enum ExitCode : int {
   kExitOk = 0,
-  kExitInternal = 1,     // a defect of the program, or memory that could not be had
+  kExitInternal = 1,     // a defect of the program
   kExitInput = 2,        // a wrong command line, scene or mesh
   kExitNumerical = 3,    // the run broke down
   kExitFile = 4,         // a file cannot be read or written
   kExitDamaged = 5,      // a checkpoint or particle file is damaged, foreign or of an unknown version
+  kExitMemory = 6,       // memory could not be had
   kExitInterrupted = 75  // stopped by a signal after writing a checkpoint (EX_TEMPFAIL: try again later)
 };
 

@@ -2,7 +2,6 @@
 #include "files.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -40,12 +39,6 @@ int write_all(int descriptor, const char* data, size_t size) {
   return 0;
 }
 
-/// Two runs must not write one history; the lock goes with the process.
-void lock_or_refuse(int descriptor, const std::filesystem::path& file) {
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  throw Failure(kExitFile, file.string() + ": is being written by another run; give another directory with --output");
-}
-
 void flush_directory_of(const std::filesystem::path& file) {
   const std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -80,7 +73,6 @@ void AppendedFile::create(const std::filesystem::path& file) {
   file_ = file;
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(file, "created");
-  lock_or_refuse(descriptor_, file);
   if (::ftruncate(descriptor_, 0) != 0) fail(file, "created");
   flush_directory_of(file);
   size_ = 0;
@@ -91,7 +83,6 @@ void AppendedFile::resume(const std::filesystem::path& file, int64_t size, uint6
   file_ = file;
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0) fail(file, "continued");
-  lock_or_refuse(descriptor_, file);
   std::vector<char> block(1 << 16);
   uint64_t found_sum = kSumStart;
   int64_t found = 0;
@@ -110,9 +101,12 @@ void AppendedFile::resume(const std::filesystem::path& file, int64_t size, uint6
     throw Failure(kExitFile, file.string() + ": is not the history that the checkpoint continues (expected its first " +
                                  std::to_string(size) + " bytes unchanged); give another directory with --output");
   }
-  if (::ftruncate(descriptor_, size) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0) fail(file, "continued");
   size_ = size;
   sum_ = sum;
+}
+
+void AppendedFile::cut() {
+  if (::ftruncate(descriptor_, size_) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0) fail(file_, "continued");
 }
 
 void AppendedFile::append(const std::string& record) {

@@ -20,8 +20,10 @@ class AppendedFile {
 
   /// Starts an empty file.
   void create(const std::filesystem::path& file);
-  /// Cuts an existing file to `size` bytes and goes on from there. The content must have the sum that was recorded.
+  /// Takes up an existing file to go on after its first `size` bytes, which must have the sum that was recorded.
   void resume(const std::filesystem::path& file, int64_t size, uint64_t sum);
+  /// Cuts off what is beyond them. Before the first append.
+  void cut();
   void append(const std::string& record);
   /// Until the disk has it.
   void flush_to_disk();

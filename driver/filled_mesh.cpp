@@ -22,7 +22,7 @@ void require_mesh_ok(ogive_status status, const Mesh& mesh, const std::string& p
   std::string message = mesh ? ogive_mesh_message(mesh.get()) : "";
   if (message.empty()) message = ogive_status_name(status);
   const bool user_can_mend = status != OGIVE_ERROR_MEMORY && status != OGIVE_ERROR_INTERNAL;
-  throw Failure(user_can_mend ? kExitInput : kExitInternal, place + ": " + message);
+  throw Failure(user_can_mend ? kExitInput : exit_code(status), place + ": " + message);
 }
 
 }  // namespace

@@ -23,11 +23,12 @@ namespace po = boost::program_options;
 constexpr const char* kExitCodes =
     "Exit codes:\n"
     "   0  done\n"
-    "   1  a defect of the program, or memory that could not be had\n"
+    "   1  a defect of the program\n"
     "   2  the command line, the scene or a mesh is wrong; nothing was written\n"
     "   3  the computation broke down\n"
     "   4  a file cannot be read or written\n"
     "   5  a checkpoint or particle file is damaged, foreign or of an unknown version\n"
+    "   6  memory could not be had; ogive restart goes on from the last checkpoint where there is one\n"
     "  75  interrupted by a signal after writing a checkpoint: ogive restart goes on\n";
 
 /// One command: how it is called, what it takes and what it does.
@@ -116,10 +117,15 @@ Command restart_command() {
       ("overwrite", "replace an earlier run's files in another directory")                             //
       ("threads", po::value<int64_t>(), "threads, 0 for all processors (default: as in the run)")      //
       ("until", po::value<double>(), "end time in the scene's unit of time (default: as in the run)")  //
+      ("set", po::value<std::vector<std::string>>(),
+       "path.to.key=value: another value of output, stop or numerics.threads from here on; may be repeated")  //
+      ("change-model", "lets --set change numerics, contact and materials as well, where that is consistent")  //
       ("help", "this text");
   command.call = [](const std::string& operand, const po::variables_map& values) {
     RestartOptions options;
     options.checkpoint = operand;
+    options.settings = settings_of(values);
+    options.change_model = values.count("change-model") > 0;
     options.output = optional_value<std::string>(values, "output");
     options.overwrite = values.count("overwrite") > 0;
     options.threads = optional_value<int64_t>(values, "threads");
@@ -259,7 +265,7 @@ int main(int argument_count, char** arguments) {
     return failure.code();
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "ogive: memory could not be had\n");
-    return driver::kExitInternal;
+    return driver::kExitMemory;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ogive: a defect of the program, please report it: %s\n", error.what());
     return driver::kExitInternal;

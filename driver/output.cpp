@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kHistory = "history.csv";
 constexpr const char* kSummary = "summary.json";
 constexpr const char* kSeries = "particles.xdmf";
-constexpr const char* kFailedState = "failed-state.h5";
+const std::set<std::string> kFailedFiles = {"failed-state.h5", "failed-particles.h5"};
 
 std::string particle_file_name(int64_t number) {
   char name[48];
@@ -35,8 +35,8 @@ bool has_form(const std::string& name, const std::string& beginning, const std::
 bool is_particle_file(const std::string& name) { return has_form(name, "particles-", ".h5"); }
 
 bool is_run_file(const std::string& name) {
-  static const std::set<std::string> names = {kHistory, kSummary, kSeries, kFailedState};
-  return names.count(name) || is_particle_file(name) || has_form(name, "checkpoint-", ".h5");
+  static const std::set<std::string> names = {kHistory, kSummary, kSeries};
+  return names.count(name) || kFailedFiles.count(name) || is_particle_file(name) || has_form(name, "checkpoint-", ".h5");
 }
 
 /// What a kill in the middle of writing leaves: a run file's name with .tmp-<process>.
@@ -210,20 +210,36 @@ void require_usable_directory(const std::filesystem::path& directory, bool overw
   }
 }
 
-void clear_directory(const std::filesystem::path& directory) {
+void make_directory(const std::filesystem::path& directory) {
   std::error_code problem;
   std::filesystem::create_directories(directory, problem);
   if (problem) throw Failure(kExitFile, directory.string() + ": cannot be made: " + problem.message());
+}
+
+void clear_directory(const std::filesystem::path& directory) {
   for (const std::string& name : run_files_in(directory)) remove_file(directory / name);
 }
 
-void rewind_directory(const std::filesystem::path& directory, const DriverState& state) {
+void remove_failed_files(const std::filesystem::path& directory) {
+  std::error_code ignored;
+  for (const std::string& name : kFailedFiles) std::filesystem::remove(directory / name, ignored);
+}
+
+void rewind_directory(const std::filesystem::path& directory, const DriverState& state, int64_t steps) {
+  remove_later_checkpoints(directory, steps);
   const std::set<std::string> kept(state.particle_files.begin(), state.particle_files.end());
   for (const std::string& name : run_files_in(directory)) {
     const bool later_particles = is_particle_file(name) && !kept.count(name);
-    const bool stale = later_particles || name == kSummary || name == kFailedState || is_unfinished_file(name);
+    // The state before a breakdown stays until there is a better one: it may be what goes on.
+    const bool stale = later_particles || name == kSummary || is_unfinished_file(name);
     if (stale) remove_file(directory / name);
   }
+}
+
+void reschedule(const OutputScene& before, const OutputScene& after, double time, DriverState& state) {
+  if (after.history_interval != before.history_interval) state.next_history = next_due(0, after.history_interval, time);
+  if (after.particle_interval != before.particle_interval && after.particle_interval > 0)
+    state.next_particles = next_due(0, after.particle_interval, time);
 }
 
 Output::Output(const Scene& scene, const std::filesystem::path& directory, DriverState& state)
@@ -350,6 +366,7 @@ void Output::write_summary(ogive_world* world, const RunFacts& facts) const {
   json["external_impulse"] = json_of(ledger.external_impulse);
   json["energy"] = energy_json(ledger);
   json["maximum_speed_ever"] = ledger.maximum_speed_ever;
+  json["changes"] = state_.changes;
   json["results"] = Json::object();
   for (const ResultScene& wanted : scene_.output.results) json["results"][wanted.name] = result(world, wanted);
   write_whole_file(directory_ / kSummary, json.dump(2) + '\n');

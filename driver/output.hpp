@@ -14,10 +14,18 @@ namespace driver {
 /// Throws Failure(kExitFile) if the directory cannot serve: it is a file, or holds an earlier run's files and
 /// `overwrite` is not asked for. Changes nothing.
 void require_usable_directory(const std::filesystem::path& directory, bool overwrite);
-/// Makes the directory where needed and removes what an earlier run left there.
+/// Makes the directory where there is none.
+void make_directory(const std::filesystem::path& directory);
+/// Removes what an earlier run left there.
 void clear_directory(const std::filesystem::path& directory);
-/// Makes ready to go on in the directory of the run itself: removes what was written after `state` was saved.
-void rewind_directory(const std::filesystem::path& directory, const DriverState& state);
+/// Makes ready to go on in the directory of the run itself: removes what was written after `state` was saved at step `steps`.
+void rewind_directory(const std::filesystem::path& directory, const DriverState& state, int64_t steps);
+
+/// What a breakdown left, once the run has got past it.
+void remove_failed_files(const std::filesystem::path& directory);
+
+/// Other intervals of output from a time on: their next multiples become due.
+void reschedule(const OutputScene& before, const OutputScene& after, double time, DriverState& state);
 
 /// What only the program knows about a run that has ended.
 struct RunFacts {
@@ -32,8 +40,11 @@ class Output {
 
   /// Starts a new history with the world as it is.
   void start(ogive_world* world, const ogive_progress& progress);
-  /// Goes on with the history that the state belongs to.
+  /// Looks whether history and particle files are those that the state goes on from; changes nothing.
   void resume();
+  /// Cuts the history to where the state was saved. Last of all: until then a checkpoint that is later, and not yet removed,
+  /// still fits it.
+  void cut_history() { history_.cut(); }
 
   /// Writes what is due at the world's time. The time step never bends to it: output comes with the first step at or
   /// after its due time, so that results do not depend on what is written.

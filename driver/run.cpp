@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <thread>
 
 #include "build.hpp"
 #include "checkpointing.hpp"
+#include "directory_lock.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene.hpp"
@@ -64,14 +66,18 @@ const char* stop_name(int32_t stop) {
 /// One run from a prepared world to its end.
 class Simulation {
  public:
-  Simulation(const Scene& scene, World world, const std::filesystem::path& directory, DriverState state)
+  /// `again` makes the world that the run begins with once more.
+  Simulation(const Scene& scene, World world, const std::filesystem::path& directory, DriverState state,
+             std::function<World()> again)
       : scene_(scene),
+        again_(std::move(again)),
         world_(std::move(world)),
         directory_(directory),
         state_(std::move(state)),
         output_(scene_, directory_, state_),
         wall_seconds_before_(state_.wall_seconds),
         start_(progress_of(world_.get())),
+        whole_steps_(start_.steps),
         display_(scene_.units, start_.time, scene_.stop.time, start_.particle_steps) {}
 
   ExitCode run_from_start() {
@@ -88,7 +94,8 @@ class Simulation {
   }
   ExitCode run_on_in_directory() {
     output_.resume();
-    rewind_directory(directory_, state_);
+    rewind_directory(directory_, state_, start_.steps);
+    output_.cut_history();
     return run();
   }
 
@@ -115,6 +122,7 @@ class Simulation {
   /// No exception may pass through the engine: it waits here until the engine has returned.
   int32_t after_step(ogive_world* world) try {
     const ogive_progress progress = progress_of(world);
+    whole_steps_ = progress.steps;
     output_.write_due(world, progress);
     const int64_t every = scene_.output.checkpoint_steps;
     if (every > 0 && progress.steps % every == 0) save_checkpoint(progress);
@@ -141,6 +149,7 @@ class Simulation {
     if (progress.stop != OGIVE_STOP_NONE) return stop_name(progress.stop);
     if (progress.time >= scene_.stop.time) return "time";
     if (scene_.stop.max_steps > 0 && progress.steps >= scene_.stop.max_steps) return "max_steps";
+    if (progress.particles == 0) return "empty";
     return "";
   }
 
@@ -150,6 +159,7 @@ class Simulation {
     if (scene_.output.checkpoint_steps > 0) save_checkpoint(progress);
     const double wall = wall_seconds();
     output_.write_summary(world_.get(), {reason, threads_in_use(scene_.numerics), wall});
+    remove_failed_files(directory_);
 
     const ogive_ledger ledger = ledger_of(world_.get());
     std::printf("ended (%s) at step %lld, time %s %s, after %s: %s particle-steps/s\n", reason.c_str(),
@@ -172,27 +182,54 @@ class Simulation {
     return kExitInterrupted;
   }
 
-  /// The state that broke down, for whoever looks for the cause. What made it break is the message that counts.
+  /// After a breakdown, which leaves the world half-way through a step: its particles as they are, for pictures, and the state
+  /// before that step, for a restart. Steps give the same bits again, so the latter is made from the last checkpoint. What made
+  /// it break is the message that counts.
   [[noreturn]] void save_failed_state() {
     std::string message = ogive_world_message(world_.get());
-    const std::filesystem::path file = directory_ / "failed-state.h5";
     try {
       output_.flush_to_disk();
-      write_checkpoint(world_.get(), file, scene_.text, state_);
-      message += "; the state before is in " + file.string();
+      const std::filesystem::path particles = directory_ / "failed-particles.h5", state = directory_ / "failed-state.h5";
+      require_ok(ogive_particles_write(world_.get(), particles.c_str()), world_.get());
+      message += "; the particles are in " + particles.string();
+      world_.reset();  // its memory may be needed
+      const World before = state_before();
+      write_checkpoint(before.get(), state, scene_.text, state_);
+      message += ", the state of step " + std::to_string(whole_steps_) + " before it in " + state.string();
     } catch (const std::exception& failure) {
-      message += "; the state could not be saved: " + std::string(failure.what());
+      message += "; the state before could not be saved: " + std::string(failure.what());
     }
     throw Failure(kExitNumerical, "the computation broke down: " + message);
   }
 
+  World state_before() {
+    World world;
+    try {
+      std::vector<std::string> ignored;
+      if (scene_.output.checkpoint_steps > 0) world = load_checkpoint(directory_, ignored).world;
+    } catch (const Failure&) {  // none yet
+    }
+    if (!world || progress_of(world.get()).steps > whole_steps_) world = again_();
+    const int64_t steps = whole_steps_ - progress_of(world.get()).steps;
+    if (steps > 0) {
+      std::printf("broken down; making the state before it by %lld steps from the last checkpoint or the start\n",
+                   static_cast<long long>(steps));
+      const auto asked_to_end = [](ogive_world*, void*) -> int32_t { return signal_received != 0; };
+      require_ok(ogive_world_advance(world.get(), scene_.stop.time, steps, asked_to_end, nullptr), world.get());
+    }
+    if (progress_of(world.get()).steps != whole_steps_) throw Failure(kExitInterrupted, "interrupted by a signal");
+    return world;
+  }
+
   Scene scene_;
+  std::function<World()> again_;
   World world_;
   std::filesystem::path directory_;
   DriverState state_;
   Output output_;
   double wall_seconds_before_;
   ogive_progress start_;
+  int64_t whole_steps_;  // done by the last step that was well
   Progress display_;
   std::exception_ptr problem_;
 };
@@ -222,41 +259,85 @@ ExitCode run(const RunOptions& options) {
 
   // Only now that the whole model has been accepted is anything written.
   catch_signals();
+  make_directory(directory);
+  const DirectoryLock lock(directory);
+  require_usable_directory(directory, options.overwrite);  // another run may have come and gone
   clear_directory(directory);
   DriverState state;
   state.scene_file = options.scene_file;
-  return Simulation(scene, std::move(built.world), directory, std::move(state)).run_from_start();
+  return Simulation(scene, std::move(built.world), directory, std::move(state), [&] { return build_world(scene).world; })
+      .run_from_start();
 }
+
+namespace {
+
+/// The scene that goes on from a checkpoint, the world and the state being changed to it.
+Scene changed_scene(const RestartOptions& options, LoadedCheckpoint& loaded) {
+  const Scene before = read_scene(Document::from_text(loaded.scene_text, "scene in " + loaded.file.string()),
+                                  loaded.state.scene_file);
+  Document document = Document::from_text(loaded.scene_text, "scene in " + loaded.file.string());
+  document.merge(options.settings);
+  if (options.until) set_option(document, "stop.time", shortest(*options.until), "--until");
+  if (options.threads) set_option(document, "numerics.threads", std::to_string(*options.threads), "--threads");
+  Scene scene = read_scene(document, loaded.state.scene_file);
+  const ogive_progress progress = progress_of(loaded.world.get());
+  if (scene.stop.time != before.stop.time && scene.stop.time < progress.time) {
+    throw Failure(kExitInput, (options.until ? "--until " + shortest(*options.until) : scene.place("stop.time")) +
+                                  ": must be >= the checkpoint's time (" + shortest(progress.time) + ' ' + scene.units.time +
+                                  ')');
+  }
+  const std::vector<std::string> changes = model_changes(before, scene);
+  if (!changes.empty() && !options.change_model) {
+    throw Failure(kExitInput, "--set: changes " + joined(changes) +
+                                  " of a run that has begun; expected output, stop or numerics.threads alone, or "
+                                  "--change-model where that is meant");
+  }
+  StopScene same_end = scene.stop;
+  same_end.time = before.stop.time;
+  same_end.max_steps = before.stop.max_steps;
+  if (!changes.empty() || same_end != before.stop) change_world(before, scene, loaded.world.get());
+  for (const std::string& setting : options.settings)
+    loaded.state.changes.push_back("step " + std::to_string(progress.steps) + ": --set " + setting);
+  reschedule(before.output, scene.output, progress.time, loaded.state);
+  require_ok(ogive_world_set_threads(loaded.world.get(), scene.numerics.threads.value_or(1)), loaded.world.get());
+  return scene;
+}
+
+}  // namespace
 
 ExitCode restart(const RestartOptions& options) {
   std::vector<std::string> notes;
   LoadedCheckpoint loaded = load_checkpoint(options.checkpoint, notes);
-  for (const std::string& note : notes) std::printf("%s\n", note.c_str());
-
-  Document document = Document::from_text(loaded.scene_text, "scene in " + loaded.file.string());
-  if (options.until) set_option(document, "stop.time", shortest(*options.until), "--until");
-  if (options.threads) set_option(document, "numerics.threads", std::to_string(*options.threads), "--threads");
-  const Scene scene = read_scene(document, loaded.state.scene_file);
-  const ogive_progress progress = progress_of(loaded.world.get());
-  if (options.until && *options.until < progress.time) {
-    throw Failure(kExitInput, "--until " + shortest(*options.until) + ": must be >= the checkpoint's time (" +
-                                  shortest(progress.time) + ' ' + scene.units.time + ')');
-  }
-  require_ok(ogive_world_set_threads(loaded.world.get(), scene.numerics.threads.value_or(1)), loaded.world.get());
-
   std::filesystem::path home = loaded.file.parent_path();
   if (home.empty()) home = ".";
   const std::filesystem::path directory = options.output ? std::filesystem::path(*options.output) : home;
   std::error_code ignored;
   const bool at_home = std::filesystem::equivalent(directory, home, ignored);
-  if (!at_home) require_usable_directory(directory, options.overwrite);
+  if (!at_home) {
+    require_usable_directory(directory, options.overwrite);
+    make_directory(directory);
+  }
+  const DirectoryLock lock(directory);
+  if (at_home) {  // another run may have gone on here between the loading and the lock
+    notes.clear();
+    loaded = load_checkpoint(options.checkpoint, notes);
+  }
+  for (const std::string& note : notes) std::printf("%s\n", note.c_str());
+
+  const Scene scene = changed_scene(options, loaded);
+  const ogive_progress progress = progress_of(loaded.world.get());
   std::printf("from %s: step %lld, time %s %s\n", loaded.file.c_str(), static_cast<long long>(progress.steps),
               brief(progress.time).c_str(), scene.units.time.c_str());
   print_beginning(scene, loaded.world.get(), directory);
 
   catch_signals();
   if (!at_home) clear_directory(directory);
-  Simulation simulation(scene, std::move(loaded.world), directory, std::move(loaded.state));
+  const auto again = [&, file = loaded.file] {
+    LoadedCheckpoint once_more = load_checkpoint(file, notes);
+    changed_scene(options, once_more);
+    return std::move(once_more.world);
+  };
+  Simulation simulation(scene, std::move(loaded.world), directory, std::move(loaded.state), again);
   // A checkpoint that was brought here alone has no history to go on with.
   const bool has_history = at_home && std::filesystem::exists(directory / "history.csv", ignored);
   return has_history ? simulation.run_on_in_directory() : simulation.run_into_new_directory();

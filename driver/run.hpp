@@ -21,6 +21,8 @@ ExitCode run(const RunOptions& options);
 
 struct RestartOptions {
   std::string checkpoint;
+  std::vector<std::string> settings;
+  bool change_model = false;
   std::optional<std::string> output;
   std::optional<int64_t> threads;
   std::optional<double> until;

@@ -536,6 +536,13 @@ OutputScene read_output(const Section& root, const Names& bodies, double stop_ti
   if (!section) return output;
   output.history_interval = section->optional_number("history_interval", kPositive).value_or(output.history_interval);
   output.particle_interval = section->optional_number("particle_interval", kNotNegative).value_or(0);
+  // Output is numbered by whole multiples of its interval.
+  const double shortest_interval = 1e-12 * stop_time;
+  for (const auto& [key, value] : {std::pair{"history_interval", output.history_interval},
+                                   std::pair{"particle_interval", output.particle_interval}}) {
+    if (value > 0 && value < shortest_interval)
+      section->refuse(key, "must be at least " + shortest(shortest_interval) + " (stop.time/1e12), got " + shortest(value));
+  }
   output.checkpoint_steps =
       section->optional_integer("checkpoint_steps", 0, int64_t{1} << 52).value_or(output.checkpoint_steps);
   output.checkpoint_keep = section->optional_integer("checkpoint_keep", 1, 1000000).value_or(output.checkpoint_keep);

@@ -23,6 +23,8 @@ struct GridScene {
   double cell_size = 0;
   Vector3 lower{}, upper{};
   std::array<int32_t, 6> faces{};
+
+  bool operator==(const GridScene&) const = default;
 };
 
 struct NumericsScene {
@@ -35,6 +37,8 @@ struct NumericsScene {
   std::optional<int32_t> update_order;
   std::optional<double> pic_fraction;
   std::optional<int32_t> xpic_order;
+
+  bool operator==(const NumericsScene&) const = default;
 };
 
 struct ContactScene {
@@ -44,17 +48,23 @@ struct ContactScene {
   std::optional<double> friction;
   std::optional<int32_t> detection;
   std::optional<double> gap_offset;
+
+  bool operator==(const ContactScene&) const = default;
 };
 
 struct ContactPairScene {
   std::array<std::string, 2> bodies;
   ContactScene rule;  // the scene's contact with this pair's changes
+
+  bool operator==(const ContactPairScene&) const = default;
 };
 
 /// A rigid plane. Its rule's normal and master mean nothing.
 struct WallScene {
   Vector3 point{}, normal{};
   ContactScene rule;  // the scene's contact with this wall's changes
+
+  bool operator==(const WallScene&) const = default;
 };
 
 struct MaterialScene {
@@ -69,6 +79,8 @@ struct MaterialScene {
   std::optional<double> eos_sound_speed, eos_slope, gruneisen;
   std::optional<double> failure_strain;
   std::optional<double> viscosity_linear, viscosity_quadratic;
+
+  bool operator==(const MaterialScene&) const = default;
 };
 
 /// A closed surface from a file, filled with particles.
@@ -80,6 +92,8 @@ struct MeshShape {
   Vector3 position{};
   double scale = 1;
   Vector3 lattice_axis{0, 0, 1}, lattice_reference{}, lattice_origin{};
+
+  bool operator==(const MeshShape&) const = default;
 };
 
 /// A solid that the engine fills by itself.
@@ -88,17 +102,23 @@ struct SolidShape {
   int32_t solid = 0;
   int32_t lattice = 0;
   Vector3 size{}, centre{}, axis{0, 0, 1}, reference{}, spacing{};
+
+  bool operator==(const SolidShape&) const = default;
 };
 
 /// Particles as they are, from a CSV file.
 struct ParticleFileShape {
   std::filesystem::path file;
+
+  bool operator==(const ParticleFileShape&) const = default;
 };
 
 /// The motion of a rigid body at one time.
 struct MotionScene {
   double time = 0;
   Vector3 velocity{}, angular_velocity{};
+
+  bool operator==(const MotionScene&) const = default;
 };
 
 struct BodyScene {
@@ -108,6 +128,8 @@ struct BodyScene {
   std::vector<MotionScene> motion;  // empty: a constant one
   Vector3 velocity{}, angular_velocity{}, angular_centre{};
   std::variant<MeshShape, SolidShape, ParticleFileShape> shape;
+
+  bool operator==(const BodyScene&) const = default;
 };
 
 struct ClampScene {
@@ -116,6 +138,8 @@ struct ClampScene {
   double radius = 0;
   std::optional<std::string> body;
   int32_t axes = 7;
+
+  bool operator==(const ClampScene&) const = default;
 };
 
 struct StopScene {
@@ -124,12 +148,16 @@ struct StopScene {
   std::optional<double> settle_window, settle_tolerance;
   std::optional<bool> stop_when_stopped, stop_when_out;
   int64_t max_steps = 0;  // 0: no limit
+
+  bool operator==(const StopScene&) const = default;
 };
 
 /// One entry of [output] results.
 struct ResultScene {
   std::string name;  // what is measured, so far residual_velocity
   std::string body;
+
+  bool operator==(const ResultScene&) const = default;
 };
 
 struct OutputScene {
@@ -138,6 +166,8 @@ struct OutputScene {
   int64_t checkpoint_steps = 0;  // 0: none
   int64_t checkpoint_keep = 3;
   std::vector<ResultScene> results;
+
+  bool operator==(const OutputScene&) const = default;
 };
 
 struct Scene {

@@ -12,6 +12,8 @@ struct Units {
   /// Labels of derived units; a combination that is a usual unit is called by its name ("mm/ms" is "m/s").
   std::string speed() const;
   std::string energy() const;
+
+  bool operator==(const Units&) const = default;
 };
 
 const std::vector<std::string>& length_unit_names();

@@ -16,6 +16,8 @@ ExitCode exit_code(ogive_status status) {
       return kExitOk;
     case OGIVE_ERROR_ARGUMENT:
       return kExitInput;
+    case OGIVE_ERROR_MEMORY:
+      return kExitMemory;
     case OGIVE_ERROR_NUMERICAL:
       return kExitNumerical;
     case OGIVE_ERROR_FILE:

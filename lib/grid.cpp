@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "audit.hpp"
+#include "breakdown.hpp"
 #include "error.hpp"
 
 namespace ogive {
@@ -69,22 +70,22 @@ class BlockTable {
 std::int32_t floor_div4(std::int32_t i) { return i >> 2; }
 
 // True if the particle is to be removed; throws where it cannot be where it is.
-bool has_left(const Model& model, const State& state, const std::string& body, std::int32_t number, const double* x) {
+bool has_left(const Model& model, const State& state, int body, std::int64_t particle) {
   const Grid& grid = model.grid;
+  const double* x = &state.bodies[static_cast<std::size_t>(body)].position[4 * static_cast<std::size_t>(particle)];
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(x[axis]))
-      throw Error(ErrorKind::Numerical, "body \"" + body + "\": particle " + std::to_string(number) +
-                                            " has no finite position at time " + std::to_string(state.time) +
-                                            "; the time step is too large or the material data are wrong");
+      throw breakdown(model, state, body, particle, "its position is not finite",
+                      "the time step is too large or the material data are wrong");
     for (int side = 0; side < 2; ++side) {
       const double beyond = side == 0 ? grid.domain_min[axis] - x[axis] : x[axis] - grid.domain_max[axis];
       if (beyond <= 0) continue;
       if (grid.face[2 * axis + side] == Face::Free) return true;
       if (beyond > 0.5 * grid.cell_size)
-        throw Error(ErrorKind::Numerical, "body \"" + body + "\": particle " + std::to_string(number) + " is " +
-                                              std::to_string(beyond) + " beyond the " + (side == 0 ? "min " : "max ") +
-                                              "xyz"[axis] + " face, which lets nothing through, at time " +
-                                              std::to_string(state.time));
+        throw breakdown(model, state, body, particle,
+                        "it is " + std::to_string(beyond) + " beyond the " + (side == 0 ? "min " : "max ") + "xyz"[axis] +
+                            " face, which lets nothing through",
+                        "it moves more than half a cell in a step against a face: a smaller time_step_factor may help");
     }
   }
   return false;
@@ -196,7 +197,7 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   std::int32_t last_group = -1;
   auto take = [&](std::int64_t p) {
     const double* x = &body.position[4 * p];
-    if (has_left(model, state, model.bodies[index].name, body.number[p], x)) {
+    if (has_left(model, state, index, p)) {
       book_departure(model.material_of(index), grid.cell_size, body, p, totals);
       return;
     }

@@ -69,6 +69,7 @@ struct ContactNeeds {
 struct MirrorPair {
   std::int64_t ghost = 0, image = 0;
   double ghost_mass = 0;
+  Vector3 ghost_momentum{};  // before it was turned round
 };
 
 // Nodes at one symmetry or fixed face.
@@ -79,6 +80,7 @@ struct FaceNodes {
   std::vector<MirrorPair> pairs;
   std::vector<std::int64_t> plane;
   std::size_t moving_pairs = 0, moving_plane = 0;
+  Vector3 plane_momentum{};  // of the moving nodes in the plane, before it was taken from them
 };
 
 struct ClampNode {
@@ -118,6 +120,7 @@ struct Workspace {
   std::vector<RigidMotion> rigid;             // of this step, in the order of the rigid bodies
   double rigid_speed = 0;                     // the fastest particle of them
   AlignedVector<NodeRecord> filter;           // XPIC: one entry a node
+  Vector3 filter_momentum{};                  // what the filter gave: nothing but for mirror faces
 
   // One entry a link, filled by the kernels and summed in order.
   std::vector<StressSums> stress_sums;

@@ -112,6 +112,13 @@ void Material::validate() {
   require_not_negative("viscosity_quadratic", viscosity_quadratic);
 }
 
+double Material::yield_stress_at(double plastic_strain, double temperature) const {
+  const double cold = yield_stress + hardening_modulus * std::pow(plastic_strain, hardening_exponent);
+  if (!thermal()) return cold;
+  const double t = (temperature - room_temperature) / (melt_temperature - room_temperature);
+  return cold * (1 - std::pow(std::clamp(t, 0.0, 1.0), thermal_exponent));
+}
+
 namespace {
 
 bool before(const PairRule& first, const PairRule& second) {

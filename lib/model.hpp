@@ -127,6 +127,8 @@ struct Material {
   bool rate_dependent() const { return strength == Strength::JohnsonCook && rate_coefficient > 0; }
   bool hyperelastic() const { return strength == Strength::NeoHookean; }
   bool viscous() const { return viscosity_linear > 0 || viscosity_quadratic > 0; }
+  // (A + B eps_p^n)(1 - T*^m), of a plastic material.
+  double yield_stress_at(double plastic_strain, double temperature) const;
   // Throws Error naming the field; fills the derived values.
   void validate();
 };
@@ -176,6 +178,8 @@ struct Stop {
   std::int32_t body = -1;
   double settle_window = 0, settle_tolerance = 0;
   bool when_stopped = true, when_out = true;
+
+  bool operator==(const Stop&) const = default;
 };
 
 struct Model {

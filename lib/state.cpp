@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "archive.hpp"
+#include "breakdown.hpp"
 #include "error.hpp"
 
 namespace ogive {
@@ -257,6 +258,7 @@ void State::exchange(const Model& model, Archive& a) {
   }
   if (a.loading() && !(stable_time_step > 0))
     throw Error(ErrorKind::Format, "state/stable_time_step: must be > 0, found " + std::to_string(stable_time_step));
+  if (a.loading()) require_sound(model, *this);
 }
 
 }  // namespace ogive

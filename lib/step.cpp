@@ -11,6 +11,7 @@
 #include <string>
 
 #include "boundary/boundary.hpp"
+#include "breakdown.hpp"
 #include "contact/contact.hpp"
 #include "contact/occupied.hpp"
 #include "error.hpp"
@@ -62,7 +63,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   if (xpic) filter_velocities(model, state, workspace);          // v* of XPIC
   if (contact) find_contacts(model, state, workspace);           // (10), the gap
   workspace.changing = true;
-  if (contact) start_contact(state, workspace, dt,               // (23)-(25)
+  if (contact) start_contact(model, state, workspace, dt,               // (23)-(25)
                              stress_first ? StartUse::MotionAndStrain : StartUse::Motion);
   if (stress_first) {
     unfold_velocity(workspace);
@@ -85,6 +86,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   unfold_motion(state, workspace);
   if (contact) book_kept_start(state, workspace);
   if (xpic) filtered_velocities(workspace);
+  book_grid_velocity(model, state, workspace);
   accelerations(state, workspace, dt);
   measure_external_force(model, state, workspace, dt);
   update_velocity_and_position(model, state, workspace, dt);     // (34), (33)
@@ -95,7 +97,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
     fold_momentum(workspace);
     nodal_velocities(workspace);
     set_rigid_velocities(model, workspace, false);
-    if (contact) start_contact(state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
+    if (contact) start_contact(model, state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
     unfold_velocity(workspace);
   }
   if (!stress_first) update_stress(model, state, workspace, dt); // (29), (30), stress; moves the particles (33)
@@ -105,6 +107,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   state.last_time_step = dt;
   ++state.steps;
   state.particle_steps += state.particle_count();
+  check_speeds(model, state);
   state.stable_time_step = stable_time_step(model, state, workspace);  // (35)
 }
 
@@ -232,6 +235,14 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
     }
     unfold_filter(workspace);
   }
+  workspace.filter_momentum = {};
+  if (workspace.faces.empty()) return;
+  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+    if (workspace.slots[s].rigid >= 0) continue;
+    for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i)
+      for (int c = 0; c < 3; ++c)
+        workspace.filter_momentum[c] += workspace.nodes[i].v[3] * (workspace.filter[i].v[c] - workspace.nodes[i].v[c]);
+  }
 }
 
 // The particles of XPIC are to have S (v* + end - mapped), whatever the first phase of contact kept from others.
@@ -288,14 +299,11 @@ void update_stress(const Model& model, State& state, Workspace& workspace, doubl
     if (sums.failed_particles > 0 && totals.first_failure_time < 0) totals.first_failure_time = state.time + dt;
     totals.failed_particles += sums.failed_particles;
     if (sums.bad_particle >= 0) {
-      const BodyState& body = state.bodies[b];
-      const double* x = &body.position[4 * sums.bad_particle];
-      throw Error(ErrorKind::Numerical,
-                  "body \"" + model.bodies[b].name + "\": particle " + std::to_string(body.number[sums.bad_particle]) +
-                      " at (" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) +
-                      "), time " + std::to_string(state.time) + ": volume ratio must be positive and finite, got " +
-                      std::to_string(body.volume_ratio[sums.bad_particle]) +
-                      "; a smaller time_step_factor may help");
+      const double ratio = state.bodies[b].volume_ratio[sums.bad_particle];
+      throw breakdown(model, state, b, sums.bad_particle,
+                      "volume ratio must be positive and finite, got " + std::to_string(ratio),
+                      ratio < 1 ? "it was crushed in one step: a smaller time_step_factor may help"
+                                : "torn or not a number, from a time step that is too large or data of no real material");
     }
   }
 }

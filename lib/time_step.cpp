@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "error.hpp"
+#include "breakdown.hpp"
 
 namespace ogive {
 namespace {
@@ -14,10 +13,8 @@ double limit(const Model& model, const State& state, double fastest) {
   double dt = model.numerics.maximum_time_step;
   if (fastest > 0) dt = std::min(dt, model.numerics.time_step_factor * model.grid.cell_size / fastest);
   // A run whose clock no longer moves would never end.
-  if (!(dt > 0) || !std::isfinite(dt) || !(state.time + dt > state.time))
-    throw Error(ErrorKind::Numerical, "time step has collapsed to " + std::to_string(dt) + " at time " +
-                                          std::to_string(state.time) + ": the fastest wave plus particle runs at " +
-                                          std::to_string(fastest));
+  if (!(dt > 0) || !std::isfinite(dt) || !(state.time + dt > state.time) || time_step_collapsed(model, state, fastest))
+    throw collapse(model, state, dt, fastest);
   return dt;
 }
 

@@ -599,6 +599,20 @@ module ogive_c
       type(c_ptr), value :: world
       integer(c_int32_t) :: ogive_world_prepare
     end function
+    function ogive_world_reopen(world) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int32_t) :: ogive_world_reopen
+    end function
+    function ogive_material_change(world, material, def) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: world
+      type(ogive_material_id), value :: material
+      type(ogive_material_def), intent(in) :: def
+      integer(c_int32_t) :: ogive_material_change
+    end function
     function ogive_world_plan(world, text, capacity, needed) bind(C)
       import
       implicit none

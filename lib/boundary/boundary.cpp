@@ -16,14 +16,19 @@ void fold_momentum(Workspace& workspace) {
     for (MirrorPair& pair : face.pairs) {
       NodeRecord &ghost = workspace.nodes[pair.ghost], &image = workspace.nodes[pair.image];
       pair.ghost_mass = ghost.v[3];
+      pair.ghost_momentum = {ghost.v[0], ghost.v[1], ghost.v[2]};
       for (int c = 0; c < 3; ++c) image.v[c] += mirror_sign(face, c) * ghost.v[c];
       image.v[3] += ghost.v[3];
       for (double& c : ghost.v) c = 0;
     }
-    for (const std::int64_t node : face.plane) {
-      NodeRecord& record = workspace.nodes[node];
+    face.plane_momentum = {};
+    for (std::size_t i = 0; i < face.plane.size(); ++i) {
+      NodeRecord& record = workspace.nodes[face.plane[i]];
       for (int c = 0; c < 3; ++c)
-        if (mirror_sign(face, c) < 0) record.v[c] = 0;
+        if (mirror_sign(face, c) < 0) {
+          if (i < face.moving_plane) face.plane_momentum[c] += record.v[c];
+          record.v[c] = 0;
+        }
     }
   }
 }
@@ -182,6 +187,24 @@ void unfold_motion(State& state, Workspace& workspace) {
         ghost.f[c] = sign * image.f[c];
       }
     }
+}
+
+void book_grid_velocity(const Model& model, State& state, const Workspace& workspace) {
+  const bool xpic = model.numerics.transfer == Transfer::Xpic;
+  const double part = xpic ? 1.0 : model.numerics.grid_velocity_fraction();
+  if (part == 0 || workspace.faces.empty()) return;
+  Vector3& impulse = state.ledger.boundary_impulse;
+  const AlignedVector<NodeRecord>& velocity = xpic ? workspace.filter : workspace.nodes;
+  for (const FaceNodes& face : workspace.faces)
+    for (int c = 0; c < 3; ++c) {
+      if (mirror_sign(face, c) > 0) continue;
+      impulse[c] -= part * face.plane_momentum[c];
+      for (std::size_t i = 0; i < face.moving_pairs; ++i) {
+        const MirrorPair& pair = face.pairs[i];
+        impulse[c] -= part * 2.0 * (pair.ghost_momentum[c] + pair.ghost_mass * velocity[pair.image].v[c]);
+      }
+    }
+  if (xpic) add(impulse, workspace.filter_momentum);
 }
 
 void apply_clamps(State& state, Workspace& workspace) {

@@ -29,6 +29,9 @@ void fold_force(State& state, Workspace& workspace, double dt);
 void hold_faces(State& state, Workspace& workspace);
 // After the final velocities (records {velocity at the beginning, mass | final velocity}): ghosts move as mirror images.
 void unfold_motion(State& state, Workspace& workspace);
+// Where particles take the grid's own velocity, or a part of it (APIC, PIC, XPIC), they take the mirrors' share in it too: what
+// nodes in the plane lost and ghosts turned round when momentum was folded. Books it. After unfold_motion.
+void book_grid_velocity(const Model& model, State& state, const Workspace& workspace);
 // Holds clamped nodes (same records): the final velocity is zero, and so the acceleration that particles see is -v / dt.
 void apply_clamps(State& state, Workspace& workspace);
 

@@ -394,9 +394,11 @@ class CoupledNodes {
       }
       for (std::size_t r = 0; r < rigid_.size(); ++r)
         if (!rigid_[r].prescribed) push(rigid_[r], impulse[r], moment[r]);
-      for (const auto& [contacts, node] : nodes_)
+      for (const auto& [contacts, node] : nodes_) {
+        const Vector3& place = node->place;
         for_free_rigid(*contacts, *node,
-                       [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(node->place); });
+                       [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(place); });
+      }
       if (worst <= coupled_tolerance * scale) break;
     }
     for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node);
@@ -641,7 +643,7 @@ void solve_node(BlockContacts& contacts, ContactNode& node, const std::vector<Ri
   }
 }
 
-void start_contact(State& state, Workspace& workspace, double dt, StartUse use) {
+void start_contact(const Model& model, State& state, Workspace& workspace, double dt, StartUse use) {
   if (use != StartUse::Strain)
     for (PairTotals& pair : state.pairs) pair.force = {};
   if (!workspace.contact_needs.start) return;
@@ -682,14 +684,25 @@ void start_contact(State& state, Workspace& workspace, double dt, StartUse use) 
     }
   });
   if (use == StartUse::Strain) return;
+  const double grid_part =
+      model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction();
   for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
     for (ContactNode& node : workspace.block_contacts[i].nodes)
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         const ContactField& field = workspace.block_contacts[i].fields[f];
+        // Particles that take the grid's own velocity see the start as well: that part of it stays with what they met.
+        const Vector3 seen = times(grid_part, field.kept), unseen = times(1 - grid_part, field.kept);
+        if (field.slot < 0) add(state.ledger.boundary_impulse, times(-1, seen));
         if (field.rigid < 0) continue;
         RigidMotion& body = workspace.rigid[field.rigid];
-        add(body.kept_impulse, field.kept);
-        add(body.kept_moment, plus(cross(minus(node.place, body.centre), field.kept), field.kept_couple));
+        const Vector3 couple = times(grid_part, field.kept_couple), unseen_couple = times(1 - grid_part, field.kept_couple);
+        add(body.impulse, seen);
+        if (body.prescribed)
+          body.contact_work += dot(seen, field.before) + dot(couple, body.spin);
+        else
+          add(state.ledger.contact_couple, couple);
+        add(body.kept_impulse, unseen);
+        add(body.kept_moment, plus(cross(minus(node.place, body.centre), unseen), unseen_couple));
       }
   book_impulses(state, workspace, dt);
   book_pairs(state, workspace, dt, false);

@@ -19,7 +19,7 @@ enum class StartUse {
   Motion,           // stress last: only what the particles never see, which belongs to the acceleration
   Strain            // stress last, the velocities that give the strain: nothing is booked, rigid bodies stay as they are
 };
-void start_contact(State& state, Workspace& workspace, double dt, StartUse use);
+void start_contact(const Model& model, State& state, Workspace& workspace, double dt, StartUse use);
 
 // Puts back, once the trial velocities stand, what the particles' increments (34) are to contain.
 void return_start(Workspace& workspace);

@@ -245,7 +245,11 @@ OGIVE_INLINE void store_three(double* to, Vec<4> v) {
 }
 
 // Asks for the cache line at `at`, which need not exist.
-OGIVE_INLINE void prefetch(const double* at) { __builtin_prefetch(at); }
+// By number: the place may be beyond the array's end, or of no array, to which a pointer must not lead.
+OGIVE_INLINE void prefetch(const double* array, std::int64_t offset) {
+  __builtin_prefetch(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(array) +
+                                                   static_cast<std::uintptr_t>(offset) * sizeof(double)));
+}
 
 // ------------------------------------------------------------------------------------------------- bits and choices
 

@@ -63,16 +63,16 @@ OGIVE_INLINE void store_law(double* to, std::int64_t skip, const LawLanes& v) {
 
 template <bool plastic, bool hyperelastic>
 OGIVE_INLINE void prefetch_scalars(const KernelParticles& particles, std::int64_t p) {
-  for (double* const component : particles.stress) prefetch(component + p);
-  prefetch(particles.volume_ratio + p);
-  prefetch(particles.energy + p);
+  for (double* const component : particles.stress) prefetch(component, p);
+  prefetch(particles.volume_ratio, p);
+  prefetch(particles.energy, p);
   if constexpr (plastic) {
-    prefetch(particles.plastic_strain + p);
-    prefetch(particles.yield_stress + p);
-    prefetch(particles.temperature + p);
+    prefetch(particles.plastic_strain, p);
+    prefetch(particles.yield_stress, p);
+    prefetch(particles.temperature, p);
   }
   if constexpr (hyperelastic)
-    for (double* const component : particles.deformation) prefetch(component + p);
+    for (double* const component : particles.deformation) prefetch(component, p);
 }
 
 // Eq. (31) by itself.

@@ -35,7 +35,7 @@ template <int size>
 OGIVE_INLINE void prefetch_records(const double* array, std::int64_t p) {
 #pragma GCC unroll 5
   for (int line = 0; line < (size * lane_count + 7) / 8; ++line)
-    prefetch(array + size * (p + prefetch_distance) + 8 * line);
+    prefetch(array, size * (p + prefetch_distance) + 8 * line);
 }
 
 // What goes with the weights: derivatives per cell (d/dxi, not d/dx), moments 4 N (x_I - x_p) / h^2, or moments

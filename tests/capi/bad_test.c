@@ -42,6 +42,8 @@ static void null_worlds(void) {
   CHECK(ogive_contact_normal_name(-1) == NULL && ogive_contact_normal_name(ogive_contact_normal_count()) == NULL);
   CHECK(ogive_world_set_stop(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_prepare(NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_world_reopen(NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_material_change(NULL, (ogive_material_id){0}, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_plan(NULL, NULL, 0, &needed) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_stable_time_step(NULL, &number) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_step(NULL, 0) == OGIVE_ERROR_ARGUMENT);
@@ -134,6 +136,8 @@ static void definitions(void) {
   CHECK(ogive_world_create(&world) == OGIVE_OK);
 
   CHECK_ORDER(world, ogive_world_prepare(world), "grid");
+  CHECK_ORDER(world, ogive_world_reopen(world), "prepared");
+  CHECK_ORDER(world, ogive_material_change(world, (ogive_material_id){0}, &copper), "prepared");
   CHECK_REFUSED(world, ogive_world_set_grid(world, NULL), "def");
   BAD_SIZES(grid, ogive_world_set_grid(world, &grid));
   WITH(grid, cell_size, 0, ogive_world_set_grid(world, &grid), "cell_size");

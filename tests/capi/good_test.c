@@ -128,6 +128,23 @@ static void a_run_advances(small_world* small) {
   CHECK_OK(world, ogive_world_set_threads(world, 1));
 }
 
+/* A run goes on with more friction and another yield stress. */
+static void a_run_is_changed(small_world* small) {
+  ogive_world* world = small->world;
+  ogive_contact_def contact;
+  ogive_material_def copper = small_material();
+  ogive_ledger ledger = {.struct_size = sizeof ledger};
+  ogive_contact_def_init(&contact, sizeof contact);
+  contact.friction = 0.2;
+  copper.yield_stress = 100;
+  CHECK_OK(world, ogive_world_reopen(world));
+  CHECK_OK(world, ogive_contact_set_pair(world, small->left, small->right, &contact));
+  CHECK_OK(world, ogive_material_change(world, small->copper, &copper));
+  CHECK_OK(world, ogive_world_ledger(world, &ledger));
+  CHECK_OK(world, ogive_world_prepare(world));
+  CHECK_OK(world, ogive_world_step(world, 0));
+}
+
 static void results_agree_with_each_other(small_world* small) {
   ogive_world* world = small->world;
   ogive_ledger ledger = {.struct_size = sizeof ledger};
@@ -434,6 +451,7 @@ int main(int argc, char** argv) {
   CHECK_OK(small.world, ogive_world_prepare(small.world));
   CHECK(logged[OGIVE_LOG_INFO] == 1 && strstr(last_log, "prepared: 2 bodies, 128 particles"));
   a_run_advances(&small);
+  a_run_is_changed(&small);
   results_agree_with_each_other(&small);
   fields_are_read_set_and_viewed(&small);
   a_deformation_gradient_is_kept_and_set();

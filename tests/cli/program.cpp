@@ -144,7 +144,7 @@ std::vector<std::string> names_in(const std::filesystem::path& directory) {
   std::vector<std::string> names;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(directory, ignored)) {
-    names.push_back(entry.path().filename().string());
+    if (entry.path().filename() != ".ogive-lock") names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return names;

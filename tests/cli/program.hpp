@@ -58,7 +58,7 @@ nlohmann::json read_json(const std::filesystem::path& file);
 size_t count_of(const std::string& text, const std::string& part);
 /// A scene of the test data, with texts replaced. Each must be there.
 std::string scene_text(const std::string& name, const std::vector<std::pair<std::string, std::string>>& replacements);
-/// Names in a directory, sorted.
+/// Names in a directory, sorted, but for the lock that every run leaves.
 std::vector<std::string> names_in(const std::filesystem::path& directory);
 
 }  // namespace cli_test

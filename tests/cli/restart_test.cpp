@@ -166,6 +166,74 @@ TEST_F(Restart, later_end_time) {
   EXPECT_EQ(run_program(scratch_.path(), {"restart", "copy", "--until", "0.01"}).exit_code, 2);
 }
 
+TEST_F(Restart, from_the_checkpoint_alone_without_scene_and_mesh) {
+  write_file(scratch_ / "cube.stl", read_file(std::filesystem::path(OGIVE_CLI_DATA) / "cube.stl"));
+  write_file(scratch_ / "scene.toml",
+             scene_text("two_boxes.toml",
+                        {{"box = { size = [4.0, 4.0, 4.0], centre = [-2.3, 0.0, 0.0] }",
+                          "mesh = \"cube.stl\"\nposition = [-2.3, 0, 0]"}}));
+  ASSERT_EQ(run_program(scratch_.path(), {"run", "scene.toml", "-o", "whole"}).exit_code, 0);
+  const Outcome part = run_program(scratch_.path(), {"run", "scene.toml", "-o", "part", "--until", "0.02"});
+  ASSERT_EQ(part.exit_code, 0) << part.errors;
+  std::filesystem::create_directory(scratch_ / "elsewhere");
+  for (const std::string& name : names_in(scratch_ / "part")) {
+    if (name.rfind("checkpoint-", 0) == 0 && names_in(scratch_ / "elsewhere").empty())
+      std::filesystem::copy(scratch_ / "part" / name, scratch_ / "elsewhere" / name);
+  }
+  for (const char* name : {"cube.stl", "scene.toml"}) std::filesystem::remove(scratch_ / name);
+  std::filesystem::remove_all(scratch_ / "part");
+  const Outcome restarted = run_program(scratch_ / "elsewhere", {"restart", ".", "--until", "0.05"});
+  ASSERT_EQ(restarted.exit_code, 0) << restarted.errors;
+  const nlohmann::json a = read_json(scratch_ / "elsewhere" / "summary.json"), b = read_json(scratch_ / "whole" / "summary.json");
+  for (const char* key : {"bodies", "energy", "steps", "results"}) EXPECT_EQ(a.at(key), b.at(key)) << key;
+}
+
+TEST_F(Restart, with_other_output_changes_no_result) {
+  std::filesystem::copy(reference(), scratch_ / "copy", std::filesystem::copy_options::recursive);
+  const std::filesystem::path oldest = scratch_ / "copy" / names_in(reference()).front();
+  const Outcome outcome = run_program(scratch_.path(), {"restart", oldest.string(), "--set", "output.history_interval=0.0005",
+                                                        "--set", "output.particle_interval=0", "--set",
+                                                        "output.checkpoint_keep=1"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  nlohmann::json summary = without_machine_figures(scratch_ / "copy");
+  EXPECT_EQ(summary.at("changes").size(), 3U);
+  EXPECT_NE(summary.at("changes")[0].get<std::string>().find(": --set output.history_interval=0.0005"), std::string::npos);
+  summary["changes"] = nlohmann::json::array();
+  EXPECT_EQ(summary, without_machine_figures(reference()));
+}
+
+TEST_F(Restart, with_another_model_asks_for_consent_and_refuses_what_cannot_be) {
+  const std::string oldest = (reference() / names_in(reference()).front()).string();
+  const auto restart = [&](const std::string& directory, std::vector<std::string> more) {
+    std::vector<std::string> command = {"restart", oldest, "-o", directory};
+    command.insert(command.end(), more.begin(), more.end());
+    return run_program(scratch_.path(), command);
+  };
+  const Outcome unasked = restart("a", {"--set", "contact.friction=0.5"});
+  EXPECT_EQ(unasked.exit_code, 2);
+  EXPECT_NE(unasked.errors.find("changes contact of a run that has begun"), std::string::npos) << unasked.errors;
+  const Outcome asked = restart("b", {"--set", "contact.friction=0.5", "--set", "materials.soft.j2_power.A=2", "--change-model"});
+  EXPECT_EQ(asked.exit_code, 0) << asked.errors;
+  EXPECT_NE(read_json(scratch_ / "b" / "summary.json").at("energy"), read_json(reference() / "summary.json").at("energy"));
+  EXPECT_EQ(read_json(scratch_ / "b" / "summary.json").at("changes").size(), 2U);
+  // What it wrote goes on with the changed model.
+  const Outcome on = run_program(scratch_.path(), {"restart", "b", "--until", "0.06"});
+  EXPECT_EQ(on.exit_code, 0) << on.errors;
+  for (const auto& [setting, words] : std::vector<std::pair<std::string, std::string>>{
+           {"bodies.left.spacing=0.4", "bodies: cannot be changed by a restart"},
+           {"parameters.V0=60", "bodies: cannot be changed by a restart"},
+           {"grid.cell_size=0.5", "grid: cannot be changed by a restart"},
+           {"materials.soft.density=1", "density: cannot be changed in a run"},
+           {"materials.soft.j2_power.youngs_modulus=50", "modulus: cannot be changed in a run"},
+           {"numerics.transfer=flip", "transfer: cannot be changed in a run"},
+           {"numerics.update_order=stress_last", "update_order: cannot be changed in a run"}}) {
+    const Outcome refused = restart("c", {"--set", setting, "--change-model"});
+    EXPECT_EQ(refused.exit_code, 2) << setting;
+    EXPECT_NE(refused.errors.find(words), std::string::npos) << refused.errors;
+    EXPECT_EQ(count_of(refused.errors, "\n"), 1U) << refused.errors;
+  }
+}
+
 TEST_F(Restart, refuses_while_the_run_is_still_at_work) {
   RunningProgram program(scratch_.path(), long_run("results"));
   wait_for_checkpoint(program, scratch_ / "results");

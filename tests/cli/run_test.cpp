@@ -143,6 +143,17 @@ TEST(Run, output_that_cannot_be_written_gives_code_4) {
   EXPECT_EQ(names_in(scratch.path()), std::vector<std::string>{"file"});
 }
 
+TEST(Run, ends_when_everything_has_left_the_domain) {
+  const ScratchDirectory scratch;
+  ASSERT_EQ(run_program(scratch.path(), {"run", scene_file(), "-o", "results", "--until", "5", "--set",
+                                         "bodies.left.velocity=[0,0,900]", "--set", "bodies.right.velocity=[0,0,900]"})
+                .exit_code,
+            0);
+  const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
+  EXPECT_EQ(summary.at("stop_reason"), "empty");
+  EXPECT_EQ(summary.at("particles"), 0);
+}
+
 TEST(Run, max_steps_ends_it) {
   const ScratchDirectory scratch;
   ASSERT_EQ(run_program(scratch.path(), {"run", scene_file(), "-o", "results", "--set", "stop.max_steps=7"}).exit_code,
@@ -152,19 +163,60 @@ TEST(Run, max_steps_ends_it) {
   EXPECT_EQ(summary.at("stop_reason"), "max_steps");
 }
 
-TEST(Run, breakdown_gives_code_3_and_keeps_the_state) {
-  const ScratchDirectory scratch;
-  // Crushed between rigid walls at Mach 13, with a law that knows no shocks.
+/// Crushed between rigid walls at Mach 13, with a law that knows no shocks.
+std::vector<std::string> breaking_run() {
   std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "parameters.V0=5000"};
   for (const char* face : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}) {
     command.insert(command.end(), {"--set", std::string("grid.faces.") + face + "=fixed"});
   }
-  const Outcome outcome = run_program(scratch.path(), command);
+  return command;
+}
+
+TEST(Run, breakdown_gives_code_3_and_keeps_the_state) {
+  const ScratchDirectory scratch;
+  const Outcome outcome = run_program(scratch.path(), breaking_run());
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_EQ(count_of(outcome.errors, "\n"), 1U) << outcome.errors;
   EXPECT_EQ(outcome.errors.find("the computation broke down: "), 0U) << outcome.errors;
   EXPECT_EQ(run_program(scratch.path(), {"info", "results/failed-state.h5", "--verify"}).exit_code, 0);
+  EXPECT_EQ(run_program(scratch.path(), {"info", "results/failed-particles.h5", "--verify"}).exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(scratch / "results" / "summary.json"));
+  for (const char* part : {"particle ", " at (", ", step ", ", time ", "probable cause: "})
+    EXPECT_NE(outcome.errors.find(part), std::string::npos) << outcome.errors;
+
+  // The state is that before the step that broke down: it breaks down there again, with the same words.
+  const std::string cause = outcome.errors.substr(0, outcome.errors.find("; the particles are in"));
+  const Outcome again = run_program(scratch.path(), {"restart", "results/failed-state.h5", "-o", "again"});
+  EXPECT_EQ(again.exit_code, 3);
+  EXPECT_EQ(again.errors.substr(0, again.errors.find("; the particles are in")), cause);
+  EXPECT_NE(again.output.find("from results/failed-state.h5: step "), std::string::npos) << again.output;
+}
+
+TEST(Run, a_state_before_a_breakdown_goes_on_with_a_shorter_time_step) {
+  const ScratchDirectory scratch;
+  const Outcome broken = run_program(scratch.path(), breaking_run());
+  ASSERT_EQ(broken.exit_code, 3) << broken.errors;
+  const Outcome on = run_program(scratch.path(), {"restart", "results/failed-state.h5", "--change-model", "--set",
+                                                  "numerics.time_step_factor=0.02", "--set", "stop.max_steps=60"});
+  EXPECT_EQ(on.exit_code, 0) << on.errors;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "results" / "failed-state.h5"));
+  const nlohmann::json changes = read_json(scratch / "results" / "summary.json").at("changes");
+  EXPECT_EQ(changes.size(), 2U);
+}
+
+TEST(Run, two_in_one_directory_are_refused_and_the_first_goes_on) {
+  const ScratchDirectory scratch;
+  std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "numerics.maximum_time_step=2e-5",
+                                      "--set", "output.checkpoint_steps=1000"};
+  RunningProgram first(scratch.path(), command);
+  while (!std::filesystem::exists(scratch / "results" / "history.csv") && !first.ended()) {
+  }
+  command.push_back("--overwrite");
+  const Outcome second = run_program(scratch.path(), command);
+  EXPECT_EQ(second.exit_code, 4);
+  EXPECT_NE(second.errors.find("is being written by another run (process "), std::string::npos) << second.errors;
+  EXPECT_EQ(first.wait().exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(scratch / "results" / "summary.json"));
 }
 
 }  // namespace
