@@ -35,6 +35,7 @@ struct NumericsScene {
   std::optional<int32_t> update_order;
   std::optional<double> pic_fraction;
   std::optional<int32_t> xpic_order;
+  std::optional<double> energy_warning, energy_limit;
 };
 
 struct ContactScene {
