@@ -203,6 +203,7 @@ Command study_command() {
       ("cache", po::value<std::string>(), "directory of the cases, which studies may share (default: cases in the output)")  //
       ("jobs,j", po::value<int64_t>()->default_value(1), "cases at once, a process each")                  //
       ("timeout", po::value<double>(), "seconds after which a case is given up (default: the study's timeout, or none)")  //
+      ("only", po::value<std::vector<std::string>>(), "axis=label: these cases alone; may be repeated")  //
       ("list", "check the study and name its cases; nothing is run")                                       //
       ("help", "this text");
   command.call = [](const std::string& operand, const po::variables_map& values) {
@@ -214,6 +215,7 @@ Command study_command() {
     if (jobs < 1 || jobs > 1024) throw Failure(kExitInput, "--jobs: must be 1 to 1024, got " + std::to_string(jobs));
     options.jobs = static_cast<int>(jobs);
     if (values.count("timeout")) options.timeout = checked_number(values, "timeout");
+    if (values.count("only")) options.only = values["only"].as<std::vector<std::string>>();
     options.list = values.count("list") > 0;
     return study(options);
   };

@@ -151,6 +151,7 @@ class Simulation {
     if (progress.stop != OGIVE_STOP_NONE) return stop_name(progress.stop);
     if (progress.time >= scene_.stop.time) return "time";
     if (scene_.stop.max_steps > 0 && progress.steps >= scene_.stop.max_steps) return "max_steps";
+    if (progress.particles == 0) return "empty";
     return "";
   }
 

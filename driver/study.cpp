@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -80,6 +81,16 @@ ExitCode study(const StudyOptions& options) {
   cases.timeout = options.timeout.value_or(study.timeout);
   cases.only_list = options.list;
 
+  for (const std::string& wanted : options.only) {
+    const size_t equals = wanted.find('=');
+    const std::vector<std::string> axes = axis_names(study);
+    const std::string axis = wanted.substr(0, equals);
+    if (equals == std::string::npos || std::find(axes.begin(), axes.end(), axis) == axes.end()) {
+      throw Failure(kExitInput, "--only " + wanted + ": expected axis=label with one of the axes " + joined(axes) + suggestion(axis, axes));
+    }
+    cases.only.emplace_back(axis, wanted.substr(equals + 1));
+  }
+
   size_t there = 0;
   const StudyRun run = run_cases(
       study, cases,
@@ -94,6 +105,7 @@ ExitCode study(const StudyOptions& options) {
                     of.outcome.message.empty() ? "" : ": ", of.outcome.message.c_str(), duration(of.outcome.cpu_seconds).c_str());
         std::fflush(stdout);
       });
+  if (run.cases.empty() && !run.interrupted) throw Failure(kExitInput, "--only: leaves no case of " + options.study_file);
   if (options.list) {
     for (const StudyCase& of : run.cases) std::printf("%s  %s\n", of.key.c_str(), labels_in_words(of).c_str());
     std::printf("%zu cases\n", run.cases.size());

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "failure.hpp"
 
@@ -14,6 +15,7 @@ struct StudyOptions {
   std::optional<std::string> cache;   // directory of cases; default: "cases" in the output
   int jobs = 1;
   std::optional<double> timeout;      // seconds a case; default: the study's
+  std::vector<std::string> only;      // axis=label
   bool list = false;                  // tell the cases, run none
 };
 ExitCode study(const StudyOptions& options);

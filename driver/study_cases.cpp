@@ -333,6 +333,12 @@ StudyRun run_cases(const Study& study, const CaseOptions& options, const std::fu
     const auto& axes = study.sweeps[sweep].axes;
     const auto bisecting = std::find_if(axes.begin(), axes.end(), [](const StudyAxis& axis) { return axis.bisects(); });
     for (StudyCase& of : combinations(study, sweep)) {
+      if (!std::all_of(options.only.begin(), options.only.end(), [&](const auto& wanted) {
+            const auto label = of.labels.find(wanted.first);
+            return label != of.labels.end() && label->second == wanted.second;
+          })) {
+        continue;
+      }
       if (bisecting == axes.end()) {
         add(std::move(of));
         continue;

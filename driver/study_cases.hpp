@@ -53,6 +53,7 @@ struct CaseOptions {
   std::filesystem::path cache;
   int jobs = 1;
   double timeout = 0;
+  std::vector<std::pair<std::string, std::string>> only;  // axis, label: cases with another label there are left out
   bool only_list = false;  // check and name the cases, run none
 };
 

@@ -35,17 +35,30 @@ Labels read_labels(const Section& section, const std::string& key) {
   return labels;
 }
 
+std::vector<StudyPoint> read_points(const Section& section, const std::filesystem::path& file) {
+  std::vector<StudyPoint> points;
+  for (const Section& point : section.tables("points", Names{"label", "settings"})) {
+    points.push_back({point.scalar("label"), read_settings(point, file)});
+  }
+  if (points.empty()) section.refuse("points", "must hold at least one point, got none");
+  return points;
+}
+
 StudyAxis read_axis(const Section& section, const std::filesystem::path& study) {
   StudyAxis axis;
   axis.name = section.text("name");
-  const int given = section.has("values") + section.has("points") + section.has("bisect");
-  if (given != 1) section.refuse("needs exactly one of values, points, bisect");
-  if (section.has("points")) {
+  const int given = section.has("values") + section.has("points") + section.has("points_from") + section.has("bisect");
+  if (given != 1) section.refuse("needs exactly one of values, points, points_from, bisect");
+  if (section.has("points") || section.has("points_from")) {
     if (section.has("key")) section.refuse("key", "cannot be with points, which have settings of their own");
-    for (const Section& point : section.tables("points", Names{"label", "settings"})) {
-      axis.points.push_back({point.scalar("label"), read_settings(point, study)});
+    if (section.has("points")) {
+      axis.points = read_points(section, study);
+    } else {
+      const std::filesystem::path file = (study.parent_path() / section.text("points_from")).lexically_normal();
+      const Document document = Document::from_file(file, {});
+      const Expressions none;
+      axis.points = read_points(Section(document, none, document.root(), "", Names{"points"}), file);
     }
-    if (axis.points.empty()) section.refuse("points", "must hold at least one point, got none");
   } else {
     axis.key = section.text("key");
     if (section.has("values")) {
@@ -75,7 +88,7 @@ StudySweep read_sweep(const Section& section, const std::filesystem::path& study
   sweep.settings = read_settings(section, study);
   sweep.labels = read_labels(section, "labels");
   std::set<std::string> names;
-  for (const Section& axis : section.tables("axes", Names{"name", "key", "values", "points", "bisect", "tolerance"})) {
+  for (const Section& axis : section.tables("axes", Names{"name", "key", "values", "points", "points_from", "bisect", "tolerance"})) {
     sweep.axes.push_back(read_axis(axis, study));
     if (!names.insert(sweep.axes.back().name).second || sweep.labels.count(sweep.axes.back().name)) {
       axis.refuse("name", "is taken by another axis or label of this sweep: \"" + sweep.axes.back().name + '"');
@@ -102,10 +115,11 @@ StudyMeasure read_measure(const Section& measures, const std::string& name, cons
     if (section.has("at")) {
       const std::string at = section.scalar("at");
       const std::map<std::string, StudyMeasure::At> known = {
-          {"end", StudyMeasure::At::End}, {"max", StudyMeasure::At::Largest}, {"min", StudyMeasure::At::Smallest}};
+          {"end", StudyMeasure::At::End}, {"max", StudyMeasure::At::Largest}, {"min", StudyMeasure::At::Smallest},
+          {"last nonzero", StudyMeasure::At::LastOccurrence}};
       const auto found = known.find(at);
       measure.at = found != known.end() ? found->second : StudyMeasure::At::Time;
-      if (found == known.end()) measure.time = section.number("at", kNotNegative);
+      if (found == known.end()) measure.time = at;
     }
   } else {
     measure.source = StudyMeasure::Source::Expression;

@@ -43,13 +43,13 @@ struct StudySweep {
 /// A number that is read from a run.
 struct StudyMeasure {
   enum class Source { Summary, History, Expression };
-  enum class At { End, Largest, Smallest, Time };
+  enum class At { End, Largest, Smallest, Time, LastOccurrence };  // the last: the time at which it was last not zero
 
   std::string name;
   Source source = Source::Summary;
   std::string what;  // path in summary.json, column of history.csv, expression
   At at = At::End;
-  double time = 0;
+  std::string time;  // a number or an expression, in the scene's unit of time
   std::string unit = "-";
   std::string reference;                        // a number or an expression; "" for none
   std::string reference_by;                     // an axis: the reference is looked up under the case's label

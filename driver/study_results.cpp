@@ -70,19 +70,23 @@ std::optional<double> number_at(const Json& json, const std::string& path) {
   return at->get<double>();
 }
 
-double history_value(const StudyMeasure& measure, const std::vector<double>& time, const std::vector<double>& column) {
+double history_value(const StudyMeasure& measure, double when, const std::vector<double>& time, const std::vector<double>& column) {
   switch (measure.at) {
     case StudyMeasure::At::Largest:
       return *std::max_element(column.begin(), column.end());
     case StudyMeasure::At::Smallest:
       return *std::min_element(column.begin(), column.end());
     case StudyMeasure::At::Time: {
-      const auto after = std::lower_bound(time.begin(), time.end(), measure.time);
+      const auto after = std::lower_bound(time.begin(), time.end(), when);
       if (after == time.end()) return column.back();
       const auto i = static_cast<size_t>(after - time.begin());
       if (i == 0) return column.front();
-      const double part = (measure.time - time[i - 1]) / (time[i] - time[i - 1]);
+      const double part = (when - time[i - 1]) / (time[i] - time[i - 1]);
       return column[i - 1] + part * (column[i] - column[i - 1]);
+    }
+    case StudyMeasure::At::LastOccurrence: {
+      const auto last = std::find_if(column.rbegin(), column.rend(), [](double value) { return value != 0; });
+      return last == column.rend() ? 0.0 : time[static_cast<size_t>(column.rend() - last) - 1];
     }
     default:
       return column.back();
@@ -356,7 +360,8 @@ CaseResult result_of(const Study& study, const StudyCase& of) {
         if (column == history.end() || column->second.empty()) {
           refuse(measure, "history: there is no column \"" + measure.what + "\" in history.csv");
         }
-        measured.value = history_value(measure, history.at("time"), column->second) / unit;
+        const double when = measure.time.empty() ? 0.0 : evaluated(measure, "at", symbols, measure.time);
+        measured.value = history_value(measure, when, history.at("time"), column->second) / unit;
       } else {
         measured.value = evaluated(measure, "expression", symbols, measure.what);
       }

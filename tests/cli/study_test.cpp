@@ -60,6 +60,10 @@ TEST(Study, products_and_lists_become_cases_with_their_settings) {
   EXPECT_NE(listed.output.find("6 cases"), std::string::npos) << listed.output;
   EXPECT_FALSE(std::filesystem::exists(scratch / "s-study"));
 
+  EXPECT_NE(run_program(scratch.path(), {"study", "s.toml", "--list", "--only", "speed=20", "--only", "numerics=linear"}).output.find("2 cases"),
+            std::string::npos);
+  EXPECT_EQ(run_program(scratch.path(), {"study", "s.toml", "--only", "sped=20"}).exit_code, 2);
+
   const Outcome outcome = run_program(scratch.path(), {"study", "s.toml", "-j", "2"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   const json study = read_json(scratch / "s-study" / "study.json");
@@ -262,15 +266,15 @@ TEST(Study, mistakes_are_named_with_their_place_and_nothing_is_written) {
     std::vector<std::string> said;
   };
   const std::vector<Mistake> mistakes = {
-      {sweep + "key = \"parameters.V0\"\nvalues = [1]\n[charts]\neror = \"x\"\n", {"s.toml:7:1: charts.eror: unknown key; did you mean \"error\"?"}},
-      {sweep + "key = \"contact.methd\"\nvalues = [\"york\"]\n", {"s.toml:5:1", "contact.methd: unknown key; did you mean \"method\"?"}},
-      {sweep + "key = \"contact.method\"\nvalues = [\"york\", \"yorck\"]\n", {"s.toml:5:1", "V0 yorck", "did you mean \"york\"?"}},
-      {sweep + "key = \"parameters.V0\"\n", {"s.toml:3:1: sweeps[0].axes[0]: needs exactly one of values, points, bisect"}},
+      {sweep + "key = \"parameters.V0\"\nvalues = [1]\n[charts]\neror = \"x\"\n", {"s.toml:8:1: charts.eror: unknown key; did you mean \"error\"?"}},
+      {sweep + "key = \"contact.methd\"\nvalues = [\"york\"]\n", {"s.toml:6:10", "contact.methd: unknown key; did you mean \"method\"?"}},
+      {sweep + "key = \"contact.method\"\nvalues = [\"york\", \"yorck\"]\n", {"s.toml:6:10", "V0 yorck", "did you mean \"york\"?"}},
+      {sweep + "key = \"parameters.V0\"\n", {"s.toml:3:1: sweeps[0].axes[0]: needs exactly one of values, points, points_from, bisect"}},
       {sweep + "key = \"parameters.V0\"\nvalues = [1, 1]\n", {"has two points of the label \"1\""}},
-      {sweep + "key = \"parameters.V0\"\nbisect = [1, 0]\ntolerance = 0.1\n", {"s.toml:5:1: sweeps[0].axes[0].bisect: must be [lowest, highest]"}},
-      {sweep + "key = \"parameters.V0\"\nvalues = [1]\n[measures.a]\nsummary = \"steps\"\nby = \"VO\"\nreferences = { 1 = 2 }\n", {"s.toml:8:1: measures.a.by: must be the name of an axis (V0), got \"VO\"; did you mean \"V0\"?"}},
-      {"[[sweeps]]\nsettings = [\"numerics\"]\n", {"s.toml:3:1: sweeps[0].settings: must be of the form \"path.to.key=value\" or \"@file\", got \"numerics\""}},
-      {"[[sweeps]]\nsettings = [\"@nowhere.toml\"]\n", {"s.toml:3:1", "nowhere.toml"}},
+      {sweep + "key = \"parameters.V0\"\nbisect = [1, 0]\ntolerance = 0.1\n", {"s.toml:6:10: sweeps[0].axes[0].bisect: must be [lowest, highest]"}},
+      {sweep + "key = \"parameters.V0\"\nvalues = [1]\n[measures.a]\nsummary = \"steps\"\nby = \"VO\"\nreferences = { 1 = 2 }\n", {"s.toml:9:6: measures.a.by: must be the name of an axis (V0), got \"VO\"; did you mean \"V0\"?"}},
+      {"[[sweeps]]\nsettings = [\"numerics\"]\n", {"s.toml:3:12: sweeps[0].settings: must be of the form \"path.to.key=value\" or \"@file\", got \"numerics\""}},
+      {"[[sweeps]]\nsettings = [\"@nowhere.toml\"]\n", {"s.toml:3:12", "nowhere.toml"}},
       {"", {"sweeps: missing"}},
   };
   for (const Mistake& mistake : mistakes) {
