@@ -25,6 +25,7 @@
 #include "change.hpp"
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
+#include "energy_watch.hpp"
 #include "error.hpp"
 #include "grid.hpp"
 #include "loads/loads.hpp"
@@ -776,6 +777,8 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
   defaults.update_order = static_cast<std::int32_t>(numerics.update_order);
   defaults.pic_fraction = numerics.pic_fraction;
   defaults.xpic_order = numerics.xpic_order;
+  defaults.energy_warning = numerics.energy_warning;
+  defaults.energy_limit = numerics.energy_limit;
   initialise(def, size, defaults);
 }
 
@@ -792,6 +795,8 @@ ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_d
     trial.numerics.update_order = static_cast<UpdateOrder>(full.update_order);
     trial.numerics.pic_fraction = full.pic_fraction;
     trial.numerics.xpic_order = full.xpic_order;
+    trial.numerics.energy_warning = full.energy_warning;
+    trial.numerics.energy_limit = full.energy_limit;
     trial.validate_numerics();
     set_threads(world, full.threads);
     world->model.numerics = trial.numerics;
@@ -1261,11 +1266,13 @@ static void step_or_break(ogive_world* world, double dt) {
     for (const BodyState& body : world->state.bodies) before.push_back(body.totals);
   const std::int32_t stop_before = world->state.stop.reason;
   world->audits.clear();
+  bool warned = false;
   try {
     world->workspace.changing = false;
     advance_one_step(world->model, world->state, world->workspace, dt);
     // The stop condition looks at every tenth step: one pass over its body costs next to nothing then.
     if (world->state.steps % 10 == 0) check_stop(world->model, world->state);
+    warned = watch_energy(world->model, world->state);
   } catch (const std::bad_alloc&) {
     if (world->workspace.changing) world->stage = Stage::Broken;
     throw;
@@ -1274,6 +1281,10 @@ static void step_or_break(ogive_world* world, double dt) {
     throw;
   }
   if (world->log) tell_events(world, before, stop_before);
+  if (warned)
+    tell(world, OGIVE_LOG_WARNING,
+         ("the energy has grown by " + std::to_string(100 * world->state.energy_watch.largest_growth) + " % at time " +
+          std::to_string(world->state.time) + "; probable cause: " + probable_cause(world->model)).c_str());
 }
 
 ogive_status ogive_world_step(ogive_world* world, double dt) {
@@ -1368,6 +1379,12 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
                  full.transfer_dissipation - full.external_work - full.prescribed_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
+    const double growth = energy_growth(world->model, state);
+    const bool larger = growth > state.energy_watch.largest_growth;
+    full.energy_growth = larger ? growth : state.energy_watch.largest_growth;
+    full.energy_growth_time = larger ? state.time : state.energy_watch.largest_growth_time;
+    full.energy_warning_time = state.energy_watch.warning_time;
+    if (full.energy_warning_time < 0 && growth > world->model.numerics.energy_warning) full.energy_warning_time = state.time;
     deliver(full, ledger, "ledger");
   });
 }
@@ -1493,6 +1510,8 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
     const Material& material = world->model.material_of(id.index);
     const std::string field_name(field.name);
     check_values(world->model, field, values, count);
+    const bool moves_energy = field_name == "velocity" || field_name == "affine_velocity" || field_name == "energy";
+    const double energy_before = moves_energy ? total_energy(world->model, world->state) : 0;
     if (field_name == "force" && body.force.empty()) body.force.assign(4 * static_cast<std::size_t>(body.padded), 0.0);
     double fastest = 0;
     in_order_of_number(body, [&](std::int64_t rank, std::int64_t p) {
@@ -1522,6 +1541,7 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
             material.yield_stress_at(body.plastic_strain[p], material.thermal() ? body.temperature[p] : 0);
       }
     });
+    if (moves_energy) world->state.energy_watch.from_host += total_energy(world->model, world->state) - energy_before;
     if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
     if (field_name == "velocity") {
       // The next step must be safe for the new speed as well.
@@ -1592,6 +1612,9 @@ ogive_status ogive_world_load(ogive_world* world, const ogive_reader* reader) {
     fresh.state.exchange(fresh.model, archive);
     exchange_attachments(&fresh, archive);
     prepare_state(fresh.model, fresh.state, fresh.workspace);
+    // Older saves do not tell what the host had put in: what is there counts as given, and growth begins anew.
+    if (archive.version() < 3)
+      fresh.state.energy_watch.from_host = total_energy(fresh.model, fresh.state) - fresh.state.ledger.initial_total;
     fresh.has_grid = true;
     fresh.stage = Stage::Ready;
     fresh.log = world->log;

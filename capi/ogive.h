@@ -180,6 +180,11 @@ typedef struct ogive_numerics_def {
                                has 1 whatever stands here, XPIC none */
   int32_t xpic_order;       /* k of XPIC(k), 1..20; 1 is PIC. Default 2 */
   int32_t reserved1;
+  double energy_warning;    /* [-] growth of the energy, of what there was and of the work done, that is warned of: a line of the
+                               log, energy_warning_time of the ledger. Looked at every 25th step. > 0, infinity allowed.
+                               Default 0.01 */
+  double energy_limit;      /* [-] growth at which a step fails with OGIVE_ERROR_NUMERICAL; the message names the time, the
+                               particle with the most energy and the probable cause. > 0, infinity allowed. Default 1 */
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
 /* Before ogive_world_prepare; another call replaces them. */
@@ -548,6 +553,11 @@ typedef struct ogive_ledger {
   double angular_momentum[3];  /* [M L2/T] in the domain, about the origin, with that of affine velocities */
   double contact_couple[3];    /* [M L2/T] given to free rigid bodies because contact acts on them at the surface, and on a
                                   deformable body at the node: angular_momentum less this is what contact conserves */
+  double energy_growth;        /* [-] largest growth of the energy that was seen, at every 25th step and now: residual, less what
+                                  the host put in by setting fields, divided by initial_total + largest work of loads and
+                                  guides so far + what the host put in. 0: it never grew */
+  double energy_growth_time;   /* [T] when that was */
+  double energy_warning_time;  /* [T] when growth first passed energy_warning; -1: never */
 } ogive_ledger;
 /* After ogive_world_prepare; a pass over all particles. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);

@@ -92,6 +92,8 @@ class Builder {
     assign(def.update_order, scene_.numerics.update_order);
     assign(def.pic_fraction, scene_.numerics.pic_fraction);
     assign(def.xpic_order, scene_.numerics.xpic_order);
+    assign(def.energy_warning, scene_.numerics.energy_warning);
+    assign(def.energy_limit, scene_.numerics.energy_limit);
     require(ogive_world_set_numerics(world_, &def), "numerics");
   }
 

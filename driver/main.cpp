@@ -13,6 +13,7 @@
 #include "failure.hpp"
 #include "inspect.hpp"
 #include "run.hpp"
+#include "study.hpp"
 #include "text.hpp"
 
 namespace driver {
@@ -194,6 +195,39 @@ Command info_command() {
   return command;
 }
 
+Command study_command() {
+  Command command;
+  command.name = "study";
+  command.usage = "STUDY.toml [options]";
+  command.summary = "Runs a scene with many settings, and tables and charts error, energy and cost.";
+  command.details =
+      "The directory gets study.json, study.csv, study.html (a page for the browser) and pictures. A case that was run\n"
+      "before is not run again; after an interruption the same command goes on. Cases that break down are results too.\n";
+  command.operand = "study";
+  command.options.add_options()                                                                            //
+      ("output,o", po::value<std::string>(), "directory for the results (default: the study's name + -study)")  //
+      ("cache", po::value<std::string>(), "directory of the cases, which studies may share (default: cases in the output)")  //
+      ("jobs,j", po::value<int64_t>()->default_value(1), "cases at once, a process each")                  //
+      ("timeout", po::value<double>(), "seconds after which a case is given up (default: the study's timeout, or none)")  //
+      ("only", po::value<std::vector<std::string>>(), "axis=label: these cases alone; may be repeated")  //
+      ("list", "check the study and name its cases; nothing is run")                                       //
+      ("help", "this text");
+  command.call = [](const std::string& operand, const po::variables_map& values) {
+    StudyOptions options;
+    options.study_file = operand;
+    options.output = optional_value<std::string>(values, "output");
+    options.cache = optional_value<std::string>(values, "cache");
+    const int64_t jobs = values["jobs"].as<int64_t>();
+    if (jobs < 1 || jobs > 1024) throw Failure(kExitInput, "--jobs: must be 1 to 1024, got " + std::to_string(jobs));
+    options.jobs = static_cast<int>(jobs);
+    if (values.count("timeout")) options.timeout = checked_number(values, "timeout");
+    if (values.count("only")) options.only = values["only"].as<std::vector<std::string>>();
+    options.list = values.count("list") > 0;
+    return study(options);
+  };
+  return command;
+}
+
 std::string general_help(const std::vector<Command>& commands) {
   std::string text = "Ogive " + std::string(ogive_version()) +
                      ": impact and penetration by the three-dimensional material point method.\n\n"
@@ -233,7 +267,7 @@ ExitCode call_command(const Command& command, const std::vector<std::string>& ar
 
 ExitCode call_program(const std::vector<std::string>& arguments) {
   std::vector<Command> commands;
-  for (const auto make : {run_command, restart_command, check_command, voxelise_command, info_command}) {
+  for (const auto make : {run_command, restart_command, check_command, study_command, voxelise_command, info_command}) {
     commands.push_back(make());
   }
   if (arguments.empty()) throw Failure(kExitInput, "expected a command; see ogive --help");

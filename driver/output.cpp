@@ -185,6 +185,9 @@ Json energy_json(const ogive_ledger& ledger) {
   json["initial_total"] = ledger.initial_total;
   json["residual"] = ledger.residual;
   json["residual_relative"] = ledger.residual_relative;
+  json["growth"] = ledger.energy_growth;
+  json["growth_time"] = ledger.energy_growth_time;
+  json["warning_time"] = ledger.energy_warning_time < 0 ? Json() : Json(ledger.energy_warning_time);
   return json;
 }
 
@@ -354,6 +357,9 @@ void Output::write_summary(ogive_world* world, const RunFacts& facts) const {
   json["wall_seconds"] = facts.wall_seconds;
   json["particle_steps_per_second"] =
       facts.wall_seconds > 0 ? static_cast<double>(progress.particle_steps) / facts.wall_seconds : 0.0;
+  json["cpu_seconds"] = {{"start", facts.start_cpu_seconds},
+                         {"stepping", facts.stepping_cpu_seconds},
+                         {"output", facts.output_cpu_seconds}};
   json["peak_memory_bytes"] = peak_memory_bytes();
   for (int32_t i = 0; i < ogive_body_count(world); ++i) {
     json["bodies"][ogive_body_name(world, ogive_body_id{i})] = body_json(body_result_of(world, i));
@@ -367,6 +373,7 @@ void Output::write_summary(ogive_world* world, const RunFacts& facts) const {
   json["energy"] = energy_json(ledger);
   json["maximum_speed_ever"] = ledger.maximum_speed_ever;
   json["changes"] = state_.changes;
+  json["warnings"] = facts.warnings;
   json["results"] = Json::object();
   for (const ResultScene& wanted : scene_.output.results) json["results"][wanted.name] = result(world, wanted);
   write_whole_file(directory_ / kSummary, json.dump(2) + '\n');

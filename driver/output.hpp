@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "checkpointing.hpp"
 #include "files.hpp"
@@ -32,6 +33,9 @@ struct RunFacts {
   std::string stop_reason;
   int32_t threads = 1;
   double wall_seconds = 0;
+  std::vector<std::string> warnings;
+  // Processor time of this process: until the first step, of output and checkpoints, of the steps themselves.
+  double start_cpu_seconds = 0, output_cpu_seconds = 0, stepping_cpu_seconds = 0;
 };
 
 class Output {

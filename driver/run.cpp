@@ -2,6 +2,7 @@
 #include "run.hpp"
 
 #include <signal.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -38,6 +39,12 @@ void catch_signals() {
     action.sa_flags = SA_RESTART;
     sigaction(number, &action, nullptr);
   }
+}
+
+double process_cpu_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 void set_option(Document& document, const std::string& key, const std::string& value, const std::string& option) {
@@ -101,6 +108,7 @@ class Simulation {
 
  private:
   ExitCode run() {
+    require_ok(ogive_world_set_log(world_.get(), &Simulation::hear, this), world_.get());
     const int64_t steps_left = scene_.stop.max_steps == 0 ? 0 : scene_.stop.max_steps - start_.steps;
     ogive_status status = OGIVE_OK;
     if (start_.time < scene_.stop.time && steps_left >= 0 && !(scene_.stop.max_steps > 0 && steps_left == 0)) {
@@ -121,12 +129,14 @@ class Simulation {
 
   /// No exception may pass through the engine: it waits here until the engine has returned.
   int32_t after_step(ogive_world* world) try {
+    const double cpu_before = process_cpu_seconds();
     const ogive_progress progress = progress_of(world);
     whole_steps_ = progress.steps;
     output_.write_due(world, progress);
     const int64_t every = scene_.output.checkpoint_steps;
     if (every > 0 && progress.steps % every == 0) save_checkpoint(progress);
     display_.update(world, progress);
+    output_cpu_seconds_ += process_cpu_seconds() - cpu_before;
     return signal_received != 0;
   } catch (...) {
     problem_ = std::current_exception();
@@ -155,13 +165,20 @@ class Simulation {
 
   ExitCode finish(const std::string& reason) {
     const ogive_progress progress = progress_of(world_.get());
+    const double cpu_before = process_cpu_seconds();
     output_.write_last(world_.get(), progress);
     if (scene_.output.checkpoint_steps > 0) save_checkpoint(progress);
+    const double cpu_after = process_cpu_seconds();
+    output_cpu_seconds_ += cpu_after - cpu_before;
     const double wall = wall_seconds();
-    output_.write_summary(world_.get(), {reason, threads_in_use(scene_.numerics), wall});
     remove_failed_files(directory_);
 
     const ogive_ledger ledger = ledger_of(world_.get());
+    std::vector<std::string> warnings;
+    if (ledger.energy_warning_time >= 0) warnings.push_back(energy_warning(ledger));
+    output_.write_summary(world_.get(), {reason, threads_in_use(scene_.numerics), wall, warnings, start_cpu_seconds_,
+                                         output_cpu_seconds_, cpu_after - start_cpu_seconds_ - output_cpu_seconds_});
+
     std::printf("ended (%s) at step %lld, time %s %s, after %s: %s particle-steps/s\n", reason.c_str(),
                 static_cast<long long>(progress.steps), brief(progress.time).c_str(), scene_.units.time.c_str(),
                 duration(wall).c_str(),
@@ -170,7 +187,26 @@ class Simulation {
                 scene_.units.energy().c_str(), brief(ledger.initial_total).c_str(), 100 * ledger.residual_relative);
     std::printf("%s", output_.results_text(world_.get()).c_str());
     std::printf("results are in %s\n", directory_.c_str());
+    std::fflush(stdout);
+    for (const std::string& warning : warnings) std::fprintf(stderr, "WARNING: %s\n", warning.c_str());
     return kExitOk;
+  }
+
+  std::string energy_warning(const ogive_ledger& ledger) const {
+    return "the energy grew by " + brief(100 * ledger.energy_growth) + " % (at " + brief(ledger.energy_growth_time) + ' ' +
+           scene_.units.time + "; more than numerics.energy_warning since " + brief(ledger.energy_warning_time) + ' ' +
+           scene_.units.time + "), which nothing gave it: do not trust the results without a run with better numerics" + cause_;
+  }
+
+  /// The engine's word as soon as the energy has grown too much. Its other cautions are in the plan.
+  static void hear(void* self, int32_t level, const char* text) {
+    const std::string line = text;
+    if (level != OGIVE_LOG_WARNING || line.find("the energy has grown by ") != 0) return;
+    auto* const simulation = static_cast<Simulation*>(self);
+    const size_t cause = line.find("; probable cause: ");
+    if (cause != std::string::npos) simulation->cause_ = line.substr(cause);
+    simulation->display_.end_line();
+    std::fprintf(stderr, "warning: %s\n", text);
   }
 
   ExitCode interrupt() {
@@ -230,8 +266,11 @@ class Simulation {
   double wall_seconds_before_;
   ogive_progress start_;
   int64_t whole_steps_;  // done by the last step that was well
+  double start_cpu_seconds_ = process_cpu_seconds();
+  double output_cpu_seconds_ = 0;
   Progress display_;
   std::exception_ptr problem_;
+  std::string cause_;  // of growing energy, as the engine tells it
 };
 
 void print_beginning(const Scene& scene, const ogive_world* world, const std::filesystem::path& directory) {

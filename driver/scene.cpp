@@ -117,7 +117,7 @@ NumericsScene read_numerics(const Section& root) {
   NumericsScene numerics;
   const auto section = root.optional_table(
       "numerics", Names{"shape_function", "time_step_factor", "maximum_time_step", "threads", "gravity", "transfer",
-                        "update_order", "pic_fraction", "xpic_order"});
+                        "update_order", "pic_fraction", "xpic_order", "energy_warning", "energy_limit"});
   if (!section) return numerics;
   numerics.shape_function = section->optional_choice(
       "shape_function", {{"linear", OGIVE_SHAPE_LINEAR},
@@ -126,6 +126,8 @@ NumericsScene read_numerics(const Section& root) {
   const Range factor = {[](double value) { return value > 0 && value <= 1.5; }, "> 0 and <= 1.5"};
   numerics.time_step_factor = section->optional_number("time_step_factor", factor);
   numerics.maximum_time_step = section->optional_number("maximum_time_step", kPositive);
+  numerics.energy_warning = section->optional_number("energy_warning", kPositive);
+  numerics.energy_limit = section->optional_number("energy_limit", kPositive);
   if (const auto threads = section->optional_integer("threads", 0, 1024)) {
     numerics.threads = static_cast<int32_t>(*threads);
   }

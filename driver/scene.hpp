@@ -37,6 +37,7 @@ struct NumericsScene {
   std::optional<int32_t> update_order;
   std::optional<double> pic_fraction;
   std::optional<int32_t> xpic_order;
+  std::optional<double> energy_warning, energy_limit;
 
   bool operator==(const NumericsScene&) const = default;
 };

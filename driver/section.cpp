@@ -187,6 +187,53 @@ std::vector<std::string> Section::texts(const std::string& key, size_t count) co
   return values;
 }
 
+std::vector<std::string> Section::optional_texts(const std::string& key) const {
+  if (!has(key)) return {};
+  const toml::array* array = table_->get(key)->as_array();
+  if (!array) refuse(key, "must be a list of texts, got " + kind_name(*table_->get(key)));
+  return texts(key, array->size());
+}
+
+std::string Section::scalar_of(const toml::node& node, const std::string& key, const std::string& expected) const {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
+  if (const auto* floating = node.as_floating_point()) return shortest(floating->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  refuse(key, "must be " + expected + ", got " + kind_name(node));
+}
+
+std::vector<std::string> Section::scalars(const std::string& key) const {
+  const std::string expected = "a list of numbers, texts, true or false";
+  const toml::node& node = required(key, expected);
+  const toml::array* array = node.as_array();
+  if (!array) refuse(key, "must be " + expected + ", got " + kind_name(node));
+  if (array->empty()) refuse(key, "must be " + expected + ", got an empty one");
+  std::vector<std::string> values;
+  for (const toml::node& element : *array) values.push_back(scalar_of(element, key, expected));
+  return values;
+}
+
+std::string Section::scalar(const std::string& key) const {
+  const std::string expected = "a number, a text, true or false";
+  return scalar_of(required(key, expected), key, expected);
+}
+
+std::vector<double> Section::numbers(const std::string& key, size_t count) const {
+  const std::string expected = "a list of " + std::to_string(count) + " numbers";
+  const toml::node& node = required(key, expected);
+  const toml::array* array = node.as_array();
+  if (!array || array->size() != count) refuse(key, "must be " + expected);
+  std::vector<double> values;
+  for (size_t i = 0; i < count; ++i) {
+    values.push_back(number_of((*array)[i], child_path(child_path(path_, key), i), kAnyNumber));
+  }
+  return values;
+}
+
+std::string Section::place(const std::string& key) const {
+  return place_of(document_->places(), child_path(path_, key));
+}
+
 Section Section::table(const std::string& key, std::optional<std::vector<std::string>> known) const {
   const toml::node& node = required(key, "a table");
   if (!node.is_table()) refuse(key, "must be a table, got " + kind_name(node));

@@ -52,6 +52,15 @@ class Section {
   /// A number for all three directions, or three numbers.
   Vector3 number_or_vector(const std::string& key, const Range& range) const;
   std::vector<std::string> texts(const std::string& key, size_t count) const;
+  /// A list of texts of any length; empty if there is none.
+  std::vector<std::string> optional_texts(const std::string& key) const;
+  /// A list, not empty, of numbers, texts and true or false, each as --set writes it.
+  std::vector<std::string> scalars(const std::string& key) const;
+  /// One such value.
+  std::string scalar(const std::string& key) const;
+  std::vector<double> numbers(const std::string& key, size_t count) const;
+  /// Where the value of `key` was written, or else the table.
+  std::string place(const std::string& key) const;
 
   Section table(const std::string& key, std::optional<std::vector<std::string>> known) const;
   std::optional<Section> optional_table(const std::string& key, std::optional<std::vector<std::string>> known) const;
@@ -67,6 +76,7 @@ class Section {
                                 const std::vector<std::string>& known) const;
 
  private:
+  std::string scalar_of(const toml::node& node, const std::string& key, const std::string& expected) const;
   const toml::node& required(const std::string& key, const std::string& expected) const;
   double number_of(const toml::node& node, const std::string& path, const Range& range) const;
   Vector3 vector_of(const toml::node& node, const std::string& path, const Range& range) const;

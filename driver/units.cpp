@@ -1,6 +1,7 @@
 // Units of a scene: names for labels.
 #include "units.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -47,6 +48,56 @@ std::string Units::energy() const {
   const double size = size_of(kMasses, mass) * speed_size * speed_size;
   const Table named = {{"J", 1.0}, {"mJ", 1e-3}, {"uJ", 1e-6}, {"kJ", 1e3}, {"MJ", 1e6}, {"GJ", 1e9}};
   return name_of(named, size, mass + ' ' + length + "2/" + time + '2');
+}
+
+double Units::size_of_unit(const std::string& unit, std::string& problem) const {
+  problem.clear();
+  if (unit == "-") return 1.0;
+  if (unit == "%") return 0.01;
+  // Base units of these units, in SI, and named units as products of powers of length, time and mass.
+  const double own_length = size_of(kLengths, length), own_time = size_of(kTimes, time),
+               own_mass = size_of(kMasses, mass);
+  const double own_energy = own_mass * own_length * own_length / (own_time * own_time);
+  Table sizes;
+  for (const auto& [name, size] : kLengths) sizes.emplace_back(name, size / own_length);
+  for (const auto& [name, size] : kTimes) sizes.emplace_back(name, size / own_time);
+  for (const auto& [name, size] : kMasses) sizes.emplace_back(name, size / own_mass);
+  for (const auto& [prefix, factor] : Table{{"u", 1e-6}, {"m", 1e-3}, {"", 1.0}, {"k", 1e3}, {"M", 1e6}, {"G", 1e9}}) {
+    sizes.emplace_back(prefix + "J", factor / own_energy);
+    sizes.emplace_back(prefix + "N", factor / (own_energy / own_length));
+    sizes.emplace_back(prefix + "Pa", factor / (own_energy / (own_length * own_length * own_length)));
+  }
+  sizes.emplace_back("km", 1e3 / own_length);
+  sizes.emplace_back("K", 1.0);
+
+  // Names with an optional whole power, multiplied by a blank, divided by "/".
+  double size = 1.0;
+  bool divide = false, wanted = true;
+  for (size_t at = 0; at < unit.size();) {
+    if (unit[at] == ' ') {
+      ++at;
+      continue;
+    }
+    if (unit[at] == '/' && !wanted) {
+      divide = wanted = true;
+      ++at;
+      continue;
+    }
+    const size_t end = std::min(unit.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", at), unit.size());
+    const std::string name = unit.substr(at, end - at);
+    const auto found = std::find_if(sizes.begin(), sizes.end(), [&](const auto& known) { return known.first == name; });
+    if (found == sizes.end()) {
+      problem = "must be a unit such as m/s, mm, mJ, MPa, % or -, got \"" + unit + '"';
+      return 1.0;
+    }
+    int power = 1;
+    at = end;
+    if (at < unit.size() && unit[at] >= '1' && unit[at] <= '9') power = unit[at++] - '0';
+    size *= std::pow(found->second, divide ? -power : power);
+    divide = wanted = false;
+  }
+  if (wanted) problem = "must be a unit such as m/s, mm, mJ, MPa, % or -, got \"" + unit + '"';
+  return size;
 }
 
 const std::vector<std::string>& length_unit_names() {

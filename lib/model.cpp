@@ -176,6 +176,8 @@ void Model::validate_numerics() const {
   require(numerics.xpic_order >= 1 && numerics.xpic_order <= 20, "xpic_order", "1..20", numerics.xpic_order);
   require(numerics.pic_fraction >= 0 && numerics.pic_fraction <= 1, "pic_fraction", "between 0 and 1", numerics.pic_fraction);
   require_choice("update_order", numerics.update_order, 3);
+  require(numerics.energy_warning > 0, "energy_warning", "> 0", numerics.energy_warning);
+  require(numerics.energy_limit > 0, "energy_limit", "> 0", numerics.energy_limit);
 }
 
 bool Space::contains(const Vector3& x) const {
@@ -309,6 +311,10 @@ void Model::exchange(Archive& a) {
   a.value("model/numerics/pic_fraction", numerics.pic_fraction);
   a.value("model/numerics/update_order", numerics.update_order);
   if (a.version() >= 2) a.value("model/numerics/xpic_order", numerics.xpic_order);
+  if (a.version() >= 3) {
+    a.value("model/numerics/energy_warning", numerics.energy_warning);
+    a.value("model/numerics/energy_limit", numerics.energy_limit);
+  }
 
   const auto count = [&](const char* name, auto& list, std::int32_t limit) {
     std::int32_t n = static_cast<std::int32_t>(list.size());

@@ -139,6 +139,13 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/ledger/external_impulse", ledger.external_impulse);
   a.value("state/ledger/initial_total", ledger.initial_total);
 
+  if (a.version() >= 3) {
+    a.value("state/energy_watch/from_host", energy_watch.from_host);
+    a.value("state/energy_watch/largest_work", energy_watch.largest_work);
+    a.value("state/energy_watch/largest_growth", energy_watch.largest_growth);
+    a.value("state/energy_watch/largest_growth_time", energy_watch.largest_growth_time);
+    a.value("state/energy_watch/warning_time", energy_watch.warning_time);
+  }
   if (a.version() >= 2) {
     a.value("state/ledger/prescribed_work", ledger.prescribed_work);
     a.value("state/ledger/contact_couple", ledger.contact_couple);

@@ -100,6 +100,14 @@ struct Ledger {
   double initial_total = 0;
 };
 
+// Memory of the energy watch (energy_watch.hpp).
+struct EnergyWatch {
+  double from_host = 0;      // energy that came with fields that the host set
+  double largest_work = 0;   // external and prescribed work, where it was largest
+  double largest_growth = 0, largest_growth_time = 0;
+  double warning_time = -1;  // when energy_warning was first passed; -1: never
+};
+
 // Present value of a load of the model, and what it has done.
 struct LoadState {
   Vector3 value{};           // acceleration, traction or velocity
@@ -131,6 +139,7 @@ struct State {
   std::vector<LoadState> loads;    // one for each of the model's
   std::vector<PairTotals> pairs;   // ordered by a, then b
   Ledger ledger;
+  EnergyWatch energy_watch;
   StopState stop;
   ContactMemory contact_memory;  // where a contact method has one
 

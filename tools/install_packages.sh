@@ -12,6 +12,7 @@ packages=(
   libgtest-dev abigail-tools doxygen                                  # tests
   valgrind                                                            # tests: counts of instructions
   libbenchmark-dev                                                    # bench
+  chromium                                                            # tests: the page of a study in a browser
   python3 python3-numpy python3-h5py python3-matplotlib               # tools/*.py
 )
 

@@ -116,6 +116,8 @@ module ogive_c
     real(c_double) :: pic_fraction
     integer(c_int32_t) :: xpic_order
     integer(c_int32_t) :: reserved1
+    real(c_double) :: energy_warning
+    real(c_double) :: energy_limit
   end type ogive_numerics_def
 
   type, bind(C) :: ogive_clamp_def
@@ -264,6 +266,9 @@ module ogive_c
     real(c_double) :: prescribed_work
     real(c_double) :: angular_momentum(3)
     real(c_double) :: contact_couple(3)
+    real(c_double) :: energy_growth
+    real(c_double) :: energy_growth_time
+    real(c_double) :: energy_warning_time
   end type ogive_ledger
 
   type, bind(C) :: ogive_body_result

@@ -14,7 +14,7 @@ TEST(CommandLine, help_of_everything) {
   const Outcome general = run_program(scratch.path(), {"--help"});
   EXPECT_EQ(general.exit_code, 0);
   EXPECT_EQ(general.errors, "");
-  for (const char* command : {"run", "restart", "check", "voxelise", "info"}) {
+  for (const char* command : {"run", "restart", "check", "study", "voxelise", "info"}) {
     EXPECT_NE(general.output.find(std::string("  ") + command + ' '), std::string::npos);
     const Outcome outcome = run_program(scratch.path(), {command, "--help"});
     EXPECT_EQ(outcome.exit_code, 0);
@@ -42,6 +42,8 @@ TEST(CommandLine, wrong_ones_give_code_2_and_one_line) {
                                                        {"run", "a.toml", "--set"},
                                                        {"run", data("two_boxes.toml"), "-o", ""},
                                                        {"restart"},
+                                                       {"study"},
+                                                       {"study", "s.toml", "--jobs", "0"},
                                                        {"voxelise", "a.stl"},
                                                        {"voxelise", "a.stl", "--spacing", "0", "-o", "b.csv"}};
   for (const auto& arguments : wrong) {

@@ -163,6 +163,27 @@ TEST(Run, max_steps_ends_it) {
   EXPECT_EQ(summary.at("stop_reason"), "max_steps");
 }
 
+TEST(Run, growing_energy_is_said_loudly_and_stops_the_run_above_the_limit) {
+  const ScratchDirectory scratch;
+  // The nodal velocities as they are, USL: unstable where a node has next to no mass.
+  std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "numerics.update_order=stress_last_as_is"};
+  const Outcome stopped = run_program(scratch.path(), command);
+  EXPECT_EQ(stopped.exit_code, 3) << stopped.errors;
+  for (const char* part : {"warning: the energy has grown by ", "the computation broke down: at time ", "energy_limit: 100",
+                           "probable cause: the update order stress_last_as_is", "failed-state.h5"})
+    EXPECT_NE(stopped.errors.find(part), std::string::npos) << part << "\nis not in\n" << stopped.errors;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "results" / "summary.json"));
+
+  command.insert(command.end(), {"--overwrite", "--set", "numerics.energy_limit=1e30", "--set", "stop.max_steps=60"});
+  const Outcome ended = run_program(scratch.path(), command);
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_NE(ended.errors.find("WARNING: the energy grew by "), std::string::npos) << ended.errors;
+  const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
+  EXPECT_EQ(summary.at("warnings").size(), 1U);
+  EXPECT_GT(summary.at("energy").at("growth"), 0.01);
+  EXPECT_TRUE(summary.at("energy").at("warning_time").is_number());
+}
+
 /// Crushed between rigid walls at Mach 13, with a law that knows no shocks.
 std::vector<std::string> breaking_run() {
   std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "parameters.V0=5000"};

@@ -1,0 +1,113 @@
+// Watches the ledger for energy that nothing gave.
+#include "energy_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "audit.hpp"
+#include "error.hpp"
+
+namespace ogive {
+namespace {
+
+double work_done(const State& state) {
+  return std::max({state.energy_watch.largest_work, state.ledger.external_work + state.ledger.prescribed_work, 0.0});
+}
+
+double growth_of(const Model& model, const State& state, double total) {
+  const Ledger& ledger = state.ledger;
+  const double gained = total - ledger.initial_total - state.energy_watch.from_host;
+  if (!std::isfinite(gained)) return std::numeric_limits<double>::infinity();
+  double mass = 0;
+  for (const BodyState& body : state.bodies)
+    for (const Group& group : body.groups)
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) mass += body.position[4 * p + 3];
+  // Bodies at rest have round-off alone: not to be measured by itself. h/dt is about the speed of sound.
+  const double speed = state.stable_time_step > 0 ? model.grid.cell_size / state.stable_time_step : 0;
+  const double floor = 1e-12 * mass * speed * speed;
+  const double given = std::abs(ledger.initial_total) + work_done(state) + std::abs(state.energy_watch.from_host);
+  const double scale = std::max(given, floor);
+  return scale > 0 ? gained / scale : 0;
+}
+
+// The body and particle that hold the most energy for their mass: where a run comes apart.
+std::string hottest_particle(const Model& model, const State& state) {
+  double most = -1;
+  std::string text;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const BodyState& body = state.bodies[b];
+    const double density = model.material_of(static_cast<int>(b)).density;
+    std::int64_t found = -1;
+    for (const Group& group : body.groups)
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+        const double* v = &body.velocity[4 * p];
+        const double energy = 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + body.energy[p] / density;
+        if (energy > most) {
+          most = energy;
+          found = p;
+        }
+      }
+    if (found < 0) continue;
+    const double *x = &body.position[4 * found], *v = &body.velocity[4 * found];
+    text = "body \"" + model.bodies[b].name + "\": particle " + std::to_string(body.number[found]) + " at (" + std::to_string(x[0]) +
+           ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) + ") has the speed " +
+           std::to_string(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])) + " and V/V0 = " + std::to_string(body.volume_ratio[found]);
+  }
+  return text;
+}
+
+}  // namespace
+
+double energy_growth(const Model& model, const State& state) { return growth_of(model, state, total_energy(model, state)); }
+
+std::string probable_cause(const Model& model) {
+  const Numerics& numerics = model.numerics;
+  const std::string factor = std::to_string(numerics.time_step_factor);
+  if (numerics.update_order == UpdateOrder::StressLastAsIs)
+    return "the update order stress_last_as_is has no bound at nodes with little mass: use stress_first or stress_last";
+  if (numerics.shape_function == ShapeFunction::Linear && numerics.update_order == UpdateOrder::StressFirst)
+    return "trilinear functions with the stress first let pressures grow in particles that lie at nodes: use quadratic B-splines, "
+           "or stress_last";
+  if (numerics.affine() && numerics.time_step_factor > 0.58)
+    return "with affine velocities a lone particle is stable below a time-step factor of 0.58 to 0.73, here it is " + factor;
+  bool shared_node = false, first_phase = false;
+  const auto look = [&](const ContactRule& rule) {
+    shared_node = shared_node || rule.detection == Detection::SharedNode;
+    first_phase = first_phase || rule.method == ContactMethod::York || rule.method == ContactMethod::HuChen ||
+                  rule.method == ContactMethod::Pan2008;
+  };
+  if (model.bodies.size() > 1) look(model.contact);
+  for (const PairRule& pair : model.pairs) look(pair.rule);
+  for (const Wall& wall : model.walls) look(wall.rule);
+  if (shared_node && (model.bodies.size() > 1 || !model.walls.empty()) && model.own_fields)
+    return "contact wherever two bodies share a node begins up to a cell too early and pushes on what does not touch: use the "
+           "detection by gap";
+  if (first_phase && numerics.affine())
+    return "the first phase of York's, Hu and Chen's and Pan's methods makes energy with affine velocities: use the transfer flip";
+  if (numerics.shape_function == ShapeFunction::Linear)
+    return "trilinear functions disturb the stress where particles cross cells: use quadratic B-splines, or a smaller "
+           "time_step_factor (now " + factor + ")";
+  return "the time step may be too long for what moves here: use a smaller time_step_factor (now " + factor + "), or finer cells";
+}
+
+bool watch_energy(const Model& model, State& state) {
+  if (state.steps % energy_watch_steps != 0) return false;
+  EnergyWatch& watch = state.energy_watch;
+  watch.largest_work = work_done(state);
+  const double growth = energy_growth(model, state);
+  if (growth > watch.largest_growth) {
+    watch.largest_growth = growth;
+    watch.largest_growth_time = state.time;
+  }
+  if (growth > model.numerics.energy_limit)
+    throw Error(ErrorKind::Numerical,
+                "at time " + std::to_string(state.time) + ", step " + std::to_string(state.steps) + ", the energy has grown by " +
+                    std::to_string(100 * growth) + " % of what there was and of the work done (energy_limit: " +
+                    std::to_string(100 * model.numerics.energy_limit) + " %); " + hottest_particle(model, state) +
+                    "; probable cause: " + probable_cause(model));
+  if (growth <= model.numerics.energy_warning || watch.warning_time >= 0) return false;
+  watch.warning_time = state.time;
+  return true;
+}
+
+}  // namespace ogive

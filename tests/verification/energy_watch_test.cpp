@@ -1,0 +1,111 @@
+// Growing energy is told and stopped: a run never ends with energy that nothing gave it without saying so.
+#include <algorithm>
+#include <limits>
+
+#include "scene.hpp"
+#include "store.hpp"
+
+using namespace verification;
+
+namespace {
+
+void hear(void* user, std::int32_t level, const char* text) {
+  if (level == OGIVE_LOG_WARNING) static_cast<std::vector<std::string>*>(user)->push_back(text);
+}
+
+/// Two elastic cubes that meet with the nodal velocities as they are (USL), which have no bound where a node has next to no mass.
+void add_unstable_cubes(Scene& scene, double warning, double limit) {
+  scene.grid(1, {-10, -6, -6}, {10, 6, 6});
+  ogive_numerics_def numerics;
+  ogive_numerics_def_init(&numerics, sizeof numerics);
+  numerics.shape_function = OGIVE_SHAPE_LINEAR;
+  numerics.transfer = OGIVE_TRANSFER_FLIP;
+  numerics.update_order = OGIVE_UPDATE_STRESS_LAST_AS_IS;
+  numerics.energy_warning = warning;
+  numerics.energy_limit = limit;
+  scene.check(ogive_world_set_numerics(scene.get(), &numerics));
+  const ogive_material_id material = scene.material("aluminium", elastic(2.7e-3, 69e3, 0.3));
+  scene.box("left", material, {-4.1, -2, -2}, {-0.1, 2, 2}, 0.5, {100, 0, 0});
+  scene.box("right", material, {0, -2, -2}, {4, 2, 2}, 0.5, {});
+}
+
+}  // namespace
+
+TEST(EnergyWatch, AnUnstableRunIsWarnedOfOnceAndStoppedWithTimeParticleAndCause) {
+  Scene scene;
+  std::vector<std::string> told;
+  add_unstable_cubes(scene, 0.01, 1.0);
+  scene.check(ogive_world_set_log(scene.get(), &hear, &told));
+  scene.prepare();
+  told.clear();
+  EXPECT_EQ(ogive_world_advance(scene.get(), 0.1, 0, nullptr, nullptr), OGIVE_ERROR_NUMERICAL);
+  const std::string message = ogive_world_message(scene.get());
+  for (const char* part : {"at time ", "the energy has grown by ", "energy_limit: 100", "body \"", "particle ", "speed ",
+                           "probable cause: the update order stress_last_as_is"})
+    EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
+  EXPECT_EQ(std::count_if(told.begin(), told.end(), [](const std::string& t) { return t.find("the energy has grown by ") == 0; }), 1);
+  // The broken state can be looked at: its ledger tells the same.
+  const ogive_ledger ledger = scene.ledger();
+  EXPECT_GT(ledger.energy_growth, 1.0);
+  EXPECT_GT(ledger.energy_warning_time, 0.0);
+  EXPECT_LE(ledger.energy_warning_time, ledger.energy_growth_time);
+  measured("steps until it is stopped", static_cast<double>(scene.progress().steps));  // 50
+}
+
+TEST(EnergyWatch, WithoutALimitTheRunGoesOnAndTheLedgerStillTells) {
+  Scene scene;
+  add_unstable_cubes(scene, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+  scene.prepare();
+  scene.steps(75);
+  EXPECT_GT(scene.ledger().energy_growth, 0.5);
+  EXPECT_EQ(scene.ledger().energy_warning_time, -1);
+}
+
+TEST(EnergyWatch, LimitsOutOfRangeAreNamed) {
+  for (const double wrong : {0.0, -1.0, std::nan("")}) {
+    Scene scene;
+    ogive_numerics_def numerics;
+    ogive_numerics_def_init(&numerics, sizeof numerics);
+    numerics.energy_limit = wrong;
+    EXPECT_EQ(ogive_world_set_numerics(scene.get(), &numerics), OGIVE_ERROR_ARGUMENT);
+    EXPECT_NE(std::string(ogive_world_message(scene.get())).find("energy_limit"), std::string::npos);
+    numerics.energy_limit = 1;
+    numerics.energy_warning = wrong;
+    EXPECT_EQ(ogive_world_set_numerics(scene.get(), &numerics), OGIVE_ERROR_ARGUMENT);
+    EXPECT_NE(std::string(ogive_world_message(scene.get())).find("energy_warning"), std::string::npos);
+  }
+}
+
+TEST(EnergyWatch, WhatTheHostGivesAndTheWorkOfGravityAreNoGrowth) {
+  Scene scene;
+  scene.grid(1, {-10, -10, -10}, {10, 10, 10}).numerics(OGIVE_SHAPE_QUADRATIC_BSPLINE, 0.5, {0, 0, -1e4});
+  const ogive_material_id material = scene.material("aluminium", elastic(2.7e-3, 69e3, 0.3));
+  const ogive_body_id body = scene.box("block", material, {-2, -2, -2}, {2, 2, 2}, 0.5, {});
+  scene.prepare();
+  EXPECT_EQ(scene.ledger().initial_total, 0.0);
+  scene.steps(100);  // falls
+  EXPECT_GT(scene.ledger().external_work, 0.0);
+  std::vector<double> velocity = scene.field(body, "velocity");
+  for (std::size_t p = 0; p < velocity.size() / 3; ++p) velocity[3 * p] = 50;
+  scene.check(ogive_field_set(scene.get(), body, "velocity", velocity.data(), static_cast<std::int64_t>(velocity.size())));
+  EXPECT_GT(scene.ledger().residual, 0.9 * 0.5 * 64 * 2.7e-3 * 50 * 50);  // no term of the ledger has it ...
+  scene.steps(100);
+  measured("growth", scene.ledger().energy_growth);  // 4e-16
+  EXPECT_LT(scene.ledger().energy_growth, 1e-12);    // ... but the watch knows
+  EXPECT_EQ(scene.ledger().energy_warning_time, -1);
+}
+
+TEST(EnergyWatch, ItsMemoryIsSaved) {
+  Scene scene;
+  add_unstable_cubes(scene, 0.01, std::numeric_limits<double>::infinity());
+  scene.prepare();
+  scene.steps(75);
+  Store store;
+  store.save(scene);
+  Scene loaded;
+  store.load(loaded);
+  EXPECT_EQ(loaded.ledger().energy_growth, scene.ledger().energy_growth);
+  EXPECT_EQ(loaded.ledger().energy_growth_time, scene.ledger().energy_growth_time);
+  EXPECT_EQ(loaded.ledger().energy_warning_time, scene.ledger().energy_warning_time);
+  EXPECT_GT(loaded.ledger().energy_warning_time, 0);
+}
