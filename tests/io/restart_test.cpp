@@ -32,7 +32,8 @@ struct Settings {
 };
 
 std::string text_of(const Settings& settings) {
-  const char* methods[] = {"SingleField", "HuangFirst", "HuangSecond"};
+  const char* methods[] = {"SingleField", "HuangFirst",      "HuangSecond",     "York",      "HuChen",
+                           "Bardenhagen2000", "Bardenhagen2001", "Pan2008", "Persistent"};
   return std::string(settings.shape == OGIVE_SHAPE_LINEAR ? "Linear" : "BSpline") + methods[settings.method] +
          (settings.transfer == OGIVE_TRANSFER_FLIP ? "Flip" : "") +
          (settings.order == OGIVE_UPDATE_STRESS_LAST ? "StressLast" : "") +
