@@ -429,7 +429,7 @@ OGIVE_API const char* ogive_contact_normal_name(int32_t normal);
  * contact; bodies with a prescribed motion do not. What it gives is in the ledger's boundary_impulse. */
 typedef struct ogive_wall_def {
   uint32_t struct_size;
-  int32_t method;     /* OGIVE_CONTACT_*. Default second */
+  int32_t method;     /* OGIVE_CONTACT_*. Default persistent */
   double point[3];    /* [L] on the plane. Default 0 */
   double normal[3];   /* [-] towards the bodies, any length > 0. Default (0,0,1) */
   double friction;    /* Coulomb coefficient [-] >= 0. Default 0 */

@@ -46,7 +46,7 @@ static void definitions_begin_with_their_defaults(void) {
   ogive_clamp_def_init(&clamp, sizeof clamp);
   CHECK(clamp.struct_size == sizeof clamp && clamp.body.index == -1 && clamp.axes == 7);
   ogive_contact_def_init(&contact, sizeof contact);
-  CHECK(contact.method == OGIVE_CONTACT_HUANG_SECOND && contact.gap_offset == 0.3 && contact.master.index == -1);
+  CHECK(contact.method == OGIVE_CONTACT_PERSISTENT && contact.gap_offset == 0.3 && contact.master.index == -1);
   ogive_stop_def_init(&stop, sizeof stop);
   CHECK(stop.body.index == -1 && stop.stop_when_out == 1);
   ogive_load_def_init(&load, sizeof load);
@@ -412,7 +412,7 @@ static void rigid_bodies_move_as_the_host_says(void) {
   body.formulation = OGIVE_FORMULATION_RIGID_FREE;
   CHECK_OK(world, ogive_body_add_solid(world, "free", &body, &box, &small.right));
   ogive_wall_def_init(&wall, sizeof wall);
-  CHECK(wall.method == OGIVE_CONTACT_HUANG_SECOND && wall.normal[2] == 1);
+  CHECK(wall.method == OGIVE_CONTACT_PERSISTENT && wall.normal[2] == 1);
   set3(wall.point, 0, 0, -3.5);
   CHECK_OK(world, ogive_wall_add(world, &wall));
   CHECK_OK(world, ogive_world_prepare(world));

@@ -77,7 +77,7 @@ const std::vector<WrongInput> kWrongInputs = {
      {},
      {"--set", "contact.method=huang_frist"},
      {"--set contact.method=huang_frist: contact.method: must be one of single_field, huang_first, huang_second, "
-      "york, hu_chen, bardenhagen_2000, bardenhagen_2001, pan_2008, got \"huang_frist\"; did you mean \"huang_first\"?"}},
+      "york, hu_chen, bardenhagen_2000, bardenhagen_2001, pan_2008, persistent, got \"huang_frist\"; did you mean \"huang_first\"?"}},
     {"bad_normal",
      {},
      {"--set", "contact.normal=averge"},

@@ -212,7 +212,7 @@ TEST(Scene, messages_name_place_key_value_and_expectation) {
             "--set grid.upper.1=-1: grid.upper[1]: must be > grid.lower[1] (0), got -1");
   EXPECT_EQ(refusal({{"contact.method", "huang_frist"}}),
             "--set contact.method=huang_frist: contact.method: must be one of single_field, huang_first, huang_second, "
-            "york, hu_chen, bardenhagen_2000, bardenhagen_2001, pan_2008, got \"huang_frist\"; did you mean \"huang_first\"?");
+            "york, hu_chen, bardenhagen_2000, bardenhagen_2001, pan_2008, persistent, got \"huang_frist\"; did you mean \"huang_first\"?");
   EXPECT_EQ(
       refusal({{"bodies.ball.material", "zink"}}),
       "--set bodies.ball.material=zink: bodies.ball.material: must be the name of a material of the scene (zinc), "

@@ -32,7 +32,8 @@ struct Settings {
 };
 
 std::string text_of(const Settings& settings) {
-  const char* methods[] = {"SingleField", "HuangFirst", "HuangSecond"};
+  const char* methods[] = {"SingleField", "HuangFirst",      "HuangSecond",     "York",      "HuChen",
+                           "Bardenhagen2000", "Bardenhagen2001", "Pan2008", "Persistent"};
   const char* shapes[] = {"Linear", "BSpline", "Gimp"};
   return std::string(shapes[settings.shape]) + methods[settings.method] +
          (settings.transfer == OGIVE_TRANSFER_FLIP ? "Flip" : "") +
@@ -239,6 +240,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Restart,
                                          Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_FIRST},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 1, OGIVE_CONTACT_HUANG_SECOND},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_HUANG_SECOND},
+                                         Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_PERSISTENT},
                                          Settings{OGIVE_SHAPE_QUADRATIC_BSPLINE, 2, OGIVE_CONTACT_SINGLE_FIELD},
                                          Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_SECOND, OGIVE_TRANSFER_FLIP},
                                          Settings{OGIVE_SHAPE_LINEAR, 2, OGIVE_CONTACT_HUANG_SECOND,

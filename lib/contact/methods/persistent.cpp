@@ -4,7 +4,7 @@
 //
 // It keeps energy (docs/theory.md 6.4). Particles keep a relative velocity s at the node that the grid takes. Its power with the
 // internal force, which the strain does not see, is just what the contact force takes, if the strain sees neither sign of s. A
-// method that takes approach alone lets noise expand what is pressed: it gains |s| F in every other step.
+// method that takes approach alone gains |s| F where noise departs: the contact force pushes it on its way.
 #include "contact/method.hpp"
 
 namespace ogive {
