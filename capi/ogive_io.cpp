@@ -161,13 +161,38 @@ void add_file_to_message(ogive_world* world, ogive_status status, const char* pa
 
 // A symmetric tensor goes into the file in the order in which ParaView labels six components.
 constexpr char kTensorComponents[] = "xx yy zz xy yz xz";
-void reorder_tensors(std::vector<double>& values) {
-  for (std::size_t i = 0; i + 6 <= values.size(); i += 6) {  // from xx yy zz yz xz xy
-    const double yz = values[i + 3], xz = values[i + 4], xy = values[i + 5];
-    values[i + 3] = xy;
-    values[i + 4] = yz;
-    values[i + 5] = xz;
-  }
+constexpr int kTensorOrder[] = {0, 1, 2, 5, 3, 4};  // of the engine's xx yy zz yz xz xy
+
+// Place of each particle in the order of numbers; empty where the number is the place.
+std::vector<std::int32_t> ranks_of(const ogive_field_view& view, std::uint64_t particles) {
+  std::int32_t highest = -1;
+  for (std::int64_t p = 0; p < view.places; ++p) highest = std::max(highest, view.number[p]);
+  std::vector<std::int32_t> rank;
+  if (static_cast<std::uint64_t>(highest + 1) == particles) return rank;
+  rank.assign(static_cast<std::size_t>(highest) + 2, 0);
+  for (std::int64_t p = 0; p < view.places; ++p)
+    if (view.number[p] >= 0) rank[static_cast<std::size_t>(view.number[p]) + 1] = 1;
+  std::partial_sum(rank.begin(), rank.end(), rank.begin());
+  return rank;
+}
+
+// A field of several components, in pieces as long as a field of one: particles are in the engine's order, which each piece
+// goes through anew.
+void put_components(ArchiveWriter& archive, const std::string& path, const ogive_field_view& view, std::uint64_t particles) {
+  const std::vector<std::int32_t> rank = ranks_of(view, particles);
+  const std::uint64_t components = static_cast<std::uint64_t>(view.components);
+  const auto fill = [&](std::uint64_t first, std::uint64_t rows, double* values) {
+    for (std::int64_t p = 0; p < view.places; ++p) {
+      const std::int32_t number = view.number[p];
+      if (number < 0) continue;
+      const std::uint64_t row =
+          static_cast<std::uint64_t>(rank.empty() ? number : rank[static_cast<std::size_t>(number)]) - first;
+      if (row >= rows) continue;  // also what lies before, by wrapping
+      for (std::uint64_t c = 0; c < components; ++c)
+        values[components * row + c] = view.component[components == 6 ? kTensorOrder[c] : static_cast<int>(c)][p * view.stride];
+    }
+  };
+  archive.put_rows(path, {particles, components}, std::max<std::uint64_t>(1, particles / components + 1), fill);
 }
 
 // 0, 1, 2 ...: what ParaView needs to see each particle as a point to draw. XDMF has no shorter way to say so.
@@ -352,14 +377,17 @@ ogive_status ogive_particles_write(ogive_world* world, const char* path) {
         std::int32_t components = 0;
         const char* field_name = ogive_field_name(world, body, field, &components);
         if (std::strcmp(field_name, "affine_velocity") == 0) continue;  // of use to a restart, not to a picture
-        const std::uint64_t count = particles * static_cast<std::uint64_t>(components);
-        if (values.capacity() < count) values = {};      // not beside the larger one
-        values.resize(std::max<std::size_t>(count, 1));  // never a null pointer, also for a body that has left
-        require(ogive_field_get(world, body, field_name, values.data(), static_cast<std::int64_t>(count)));
-        if (components == 6) reorder_tensors(values);
-        std::vector<std::uint64_t> shape{particles};
-        if (components > 1) shape.push_back(static_cast<std::uint64_t>(components));
-        archive.put(group + "/" + ogive::io::path_component(field_name), ElementType::float64, shape, values.data());
+        const std::string field_path = group + "/" + ogive::io::path_component(field_name);
+        if (components > 1) {  // the engine keeps all of these, and shows them without a copy
+          ogive_field_view view{};
+          view.struct_size = sizeof view;
+          require(ogive_field_view_get(world, body, field_name, &view));
+          put_components(archive, field_path, view, particles);
+          continue;
+        }
+        values.resize(std::max<std::size_t>(particles, 1));  // never a null pointer, also for a body that has left
+        require(ogive_field_get(world, body, field_name, values.data(), static_cast<std::int64_t>(particles)));
+        archive.put(field_path, ElementType::float64, {particles}, values.data());
       }
       put_connectivity(archive, group + "/connectivity", particles);
     }

@@ -9,6 +9,10 @@
 #include <iostream>
 #include <sstream>
 
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
+
 #include "check.hpp"
 #include "failure.hpp"
 #include "inspect.hpp"
@@ -292,6 +296,10 @@ ExitCode call_program(const std::vector<std::string>& arguments) {
 }  // namespace driver
 
 int main(int argument_count, char** arguments) {
+#if defined(M_MMAP_THRESHOLD)
+  // Large arrays go back to the system when they are given back; by default the limit grows with what has been freed.
+  (void)mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
   try {
     return driver::call_program({arguments + 1, arguments + argument_count});
   } catch (const driver::Failure& failure) {

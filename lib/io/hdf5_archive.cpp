@@ -277,11 +277,7 @@ struct ArchiveWriter::Implementation {
     require(attribute >= 0 && H5Awrite(attribute, in_memory, value) >= 0, "write the attribute '" + name + "'");
   }
 
-  // Returns the array's place in the file.
-  std::uint64_t write_array(const std::string& path, ElementType type, const std::vector<std::uint64_t>& shape,
-                            std::uint64_t bytes, const void* data, std::uint64_t checksum) {
-    std::vector<hsize_t> dimensions(shape.begin(), shape.end());
-    const Handle space(H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr), H5Sclose);
+  hid_t create_array(const std::string& path, ElementType type, hid_t space) {
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_char_encoding(links, H5T_CSET_UTF8);
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -290,16 +286,37 @@ struct ArchiveWriter::Implementation {
     H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
     H5Pset_obj_track_times(creation, false);
-    const Handle dataset(H5Dcreate2(hdf5, path.c_str(), stored_type(type), space, links, creation, H5P_DEFAULT),
-                         H5Dclose);
+    const hid_t dataset = H5Dcreate2(hdf5, path.c_str(), stored_type(type), space, links, creation, H5P_DEFAULT);
     require(dataset >= 0, "make the array '" + path + "'");
+    return dataset;
+  }
+
+  std::uint64_t place_of(hid_t dataset, const std::string& path) {
+    const haddr_t offset = H5Dget_offset(dataset);
+    require(offset != HADDR_UNDEF, "tell the place of the array '" + path + "'");
+    return offset;
+  }
+
+  // Returns the array's place in the file.
+  std::uint64_t write_array(const std::string& path, ElementType type, const std::vector<std::uint64_t>& shape,
+                            std::uint64_t bytes, const void* data, std::uint64_t checksum) {
+    std::vector<hsize_t> dimensions(shape.begin(), shape.end());
+    const Handle space(H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr), H5Sclose);
+    const Handle dataset(create_array(path, type, space), H5Dclose);
     write_scalar(dataset, "crc64", H5T_STD_U64LE, H5T_NATIVE_UINT64, &checksum);
     if (bytes == 0) return 0;
     require(H5Dwrite(dataset, stored_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0,
             "write the array '" + path + "'");
-    const haddr_t offset = H5Dget_offset(dataset);
-    require(offset != HADDR_UNDEF, "tell the place of the array '" + path + "'");
-    return offset;
+    return place_of(dataset, path);
+  }
+
+  // Bytes of an array; throws where its name, type or shape will not do.
+  static std::uint64_t bytes_of(const std::string& path, ElementType type, const std::vector<std::uint64_t>& shape);
+  void enter(const std::string& path);
+  void list(const std::string& path, ElementType type, const std::vector<std::uint64_t>& shape, std::uint64_t offset,
+            std::uint64_t checksum) {
+    manifest += "array\t" + path + "\t" + type_name(type) + "\t" + shape_text(shape, "x") + "\t" + std::to_string(offset) +
+                "\t" + format_number("%016llx", static_cast<unsigned long long>(checksum)) + "\n";
   }
 };
 
@@ -348,9 +365,8 @@ void ArchiveWriter::set_attribute(const std::string& group, const std::string& n
   self.manifest += line + "\n";
 }
 
-void ArchiveWriter::put(const std::string& path, ElementType type, const std::vector<std::uint64_t>& shape,
-                        const void* data) {
-  auto& self = *implementation_;
+std::uint64_t ArchiveWriter::Implementation::bytes_of(const std::string& path, ElementType type,
+                                                      const std::vector<std::uint64_t>& shape) {
   if (!valid_path(path) || path == kManifestPath)
     throw Failure(Fault::argument, "'" + escape(path) + "' cannot name an array");
   if (!type_known(static_cast<std::int32_t>(type)))
@@ -363,20 +379,55 @@ void ArchiveWriter::put(const std::string& path, ElementType type, const std::ve
   bool fits = true;
   for (const auto extent : shape) fits = fits && multiply(bytes, extent, bytes);
   if (!fits || bytes > std::uint64_t{1} << 60) throw Failure(Fault::argument, "array '" + path + "' is too large");
-  if (bytes > 0 && !data) throw Failure(Fault::argument, "array '" + path + "' has no data");
+  return bytes;
+}
 
+void ArchiveWriter::Implementation::enter(const std::string& path) {
+  if (groups.contains(path)) throw Failure(Fault::argument, "'" + path + "' is a group and cannot be an array");
+  const auto slash = path.rfind('/');
+  if (slash != std::string::npos) make_group(path.substr(0, slash));
+  if (!used.insert(path).second) throw Failure(Fault::argument, "array '" + path + "' is given twice");
+}
+
+void ArchiveWriter::put(const std::string& path, ElementType type, const std::vector<std::uint64_t>& shape,
+                        const void* data) {
+  auto& self = *implementation_;
+  const std::uint64_t bytes = self.bytes_of(path, type, shape);
+  if (bytes > 0 && !data) throw Failure(Fault::argument, "array '" + path + "' has no data");
   const std::uint64_t checksum = crc64(data, bytes);
   const Hdf5Session session;
-  if (self.groups.contains(path)) throw Failure(Fault::argument, "'" + path + "' is a group and cannot be an array");
-  const auto slash = path.rfind('/');
-  if (slash != std::string::npos) self.make_group(path.substr(0, slash));
-  if (!self.used.insert(path).second) throw Failure(Fault::argument, "array '" + path + "' is given twice");
+  self.enter(path);
   const std::uint64_t offset = self.write_array(path, type, shape, bytes, data, checksum);
   self.file.check();  // stop at once on a full disk
+  self.list(path, type, shape, offset, checksum);
+}
 
-  self.manifest += "array\t" + path + "\t" + type_name(type) + "\t" + shape_text(shape, "x") + "\t" +
-                   std::to_string(offset) + "\t" + format_number("%016llx", static_cast<unsigned long long>(checksum)) +
-                   "\n";
+void ArchiveWriter::put_rows(const std::string& path, const std::vector<std::uint64_t>& shape, std::uint64_t most,
+                             const std::function<void(std::uint64_t, std::uint64_t, double*)>& fill) {
+  auto& self = *implementation_;
+  const std::uint64_t bytes = self.bytes_of(path, ElementType::float64, shape);
+  if (bytes == 0) return put(path, ElementType::float64, shape, nullptr);
+  if (most == 0) throw Failure(Fault::argument, "array '" + path + "' cannot be written in pieces of no rows");
+  const std::uint64_t row = bytes / sizeof(double) / shape[0];
+  std::vector<double> values(static_cast<std::size_t>(std::min(most, shape[0]) * row));
+  const Hdf5Session session;
+  self.enter(path);
+  std::vector<hsize_t> extent(shape.begin(), shape.end()), first(shape.size(), 0);
+  const Handle space(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
+  const Handle dataset(self.create_array(path, ElementType::float64, space), H5Dclose);
+  std::uint64_t checksum = 0;
+  for (first[0] = 0; first[0] < shape[0]; first[0] += most) {
+    extent[0] = std::min<std::uint64_t>(most, shape[0] - first[0]);
+    fill(first[0], extent[0], values.data());
+    checksum = crc64(values.data(), static_cast<std::size_t>(extent[0] * row * sizeof(double)), checksum);
+    const Handle piece(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
+    self.require(H5Sselect_hyperslab(space, H5S_SELECT_SET, first.data(), nullptr, extent.data(), nullptr) >= 0 &&
+                     H5Dwrite(dataset, stored_type(ElementType::float64), piece, space, H5P_DEFAULT, values.data()) >= 0,
+                 "write the array '" + path + "'");
+    self.file.check();
+  }
+  self.write_scalar(dataset, "crc64", H5T_STD_U64LE, H5T_NATIVE_UINT64, &checksum);
+  self.list(path, ElementType::float64, shape, self.place_of(dataset, path), checksum);
 }
 
 void ArchiveWriter::commit() {

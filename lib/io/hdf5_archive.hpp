@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -54,6 +55,10 @@ class ArchiveWriter {
   void set_attribute(const std::string& group, const std::string& name, const AttributeValue& value);
   // An array at `path` ("state/position"): components joined by '/', each as path_component makes them.
   void put(const std::string& path, ElementType type, const std::vector<std::uint64_t>& shape, const void* data);
+  // The same of doubles, row by row: fill(first, rows, values) gives `rows` of them (shape[0] in all) from `first` on, at most
+  // `most` at a time, so that the whole need not be in memory.
+  void put_rows(const std::string& path, const std::vector<std::uint64_t>& shape, std::uint64_t most,
+                const std::function<void(std::uint64_t first, std::uint64_t rows, double* values)>& fill);
   void commit();
 
  private:

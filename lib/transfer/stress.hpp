@@ -44,22 +44,10 @@ OGIVE_INLINE Symmetric<V> load_stress(const KernelParticles& particles, std::int
           load_aligned<V>(particles.stress[4] + p), load_aligned<V>(particles.stress[5] + p)};
 }
 
-// The law is evaluated for two registers of particles at once, whose operations alternate: it is a long chain, and one
-// would wait for itself. Where a group ends between the two, the second repeats the first, without mass.
-constexpr int law_half = native_width;
-constexpr int law_width = 2 * law_half;
-using LawHalf = Vec<law_half>;
+// The law is evaluated for as many particles at once as a register holds, at least four.
+constexpr int law_width = native_width == 8 ? 8 : 4;
 using LawLanes = Vec<law_width>;
-static_assert(group_padding % law_half == 0, "groups are padded to the law's registers");
-
-// The second half lies `skip` behind the first.
-OGIVE_INLINE LawLanes load_law(const double* from, std::int64_t skip) {
-  return {load_aligned<LawHalf>(from), load_aligned<LawHalf>(from + skip)};
-}
-OGIVE_INLINE void store_law(double* to, std::int64_t skip, const LawLanes& v) {
-  store_aligned(to, v.a);
-  store_aligned(to + skip, v.b);
-}
+static_assert(group_padding % law_width == 0, "groups are padded to the law's width");
 
 template <bool plastic, bool hyperelastic>
 OGIVE_INLINE void prefetch_scalars(const KernelParticles& particles, std::int64_t p) {
@@ -135,57 +123,48 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
     }
     for (int part = 0; part < count; part += law_width) {
       const std::int64_t p = start + part;
-      const bool whole = part + law_half < count;
-      const std::int64_t skip = whole ? law_half : 0;
-      for (int i = 0; i < law_width; i += group_padding)
-        prefetch_scalars<plastic, hyperelastic>(particles, p + prefetch_distance + i);
-      LawHalf x, y, z;
-      LawLanes mass;
-      load_records(particles.position + 4 * p, x, y, z, mass.a);
-      load_records(particles.position + 4 * (p + skip), x, y, z, mass.b);
-      if (!whole) mass.b = LawHalf{};
+      prefetch_scalars<plastic, hyperelastic>(particles, p + prefetch_distance);
+      Vec<law_width> x, y, z, mass;
+      load_records(particles.position + 4 * p, x, y, z, mass);
       LawState<LawLanes> s;
       s.temperature = LawLanes{};
       s.dt = broadcast<LawLanes>(group.time_step);
       const double steps_per_cell = group.time_step * group.inverse_cell;
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) s.L[i][j] = load_law(gradients[i][j] + part, skip) * steps_per_cell;
+        for (int j = 0; j < 3; ++j) s.L[i][j] = load_aligned<LawLanes>(gradients[i][j] + part) * steps_per_cell;
 
-      if constexpr (!hyperelastic)
-        s.stress = {load_law(particles.stress[0] + p, skip), load_law(particles.stress[1] + p, skip),
-                    load_law(particles.stress[2] + p, skip), load_law(particles.stress[3] + p, skip),
-                    load_law(particles.stress[4] + p, skip), load_law(particles.stress[5] + p, skip)};
-      s.volume_ratio = load_law(particles.volume_ratio + p, skip);
-      s.energy = load_law(particles.energy + p, skip);
+      if constexpr (!hyperelastic) s.stress = load_stress<LawLanes>(particles, p);
+      s.volume_ratio = load_aligned<LawLanes>(particles.volume_ratio + p);
+      s.energy = load_aligned<LawLanes>(particles.energy + p);
       if constexpr (plastic) {
-        s.plastic_strain = load_law(particles.plastic_strain + p, skip);
-        s.yield_stress = load_law(particles.yield_stress + p, skip);
+        s.plastic_strain = load_aligned<LawLanes>(particles.plastic_strain + p);
+        s.yield_stress = load_aligned<LawLanes>(particles.yield_stress + p);
         if (strength == strength_johnson_cook && material.thermal)
-          s.temperature = load_law(particles.temperature + p, skip);
+          s.temperature = load_aligned<LawLanes>(particles.temperature + p);
       }
       if constexpr (hyperelastic)
-        for (int c = 0; c < 9; ++c) s.F[c / 3][c % 3] = load_law(particles.deformation[c] + p, skip);
+        for (int c = 0; c < 9; ++c) s.F[c / 3][c % 3] = load_aligned<LawLanes>(particles.deformation[c] + p);
 
       update_law<strength, eos>(material, s);
 
-      store_law(particles.stress[0] + p, skip, s.stress.xx);
-      store_law(particles.stress[1] + p, skip, s.stress.yy);
-      store_law(particles.stress[2] + p, skip, s.stress.zz);
-      store_law(particles.stress[3] + p, skip, s.stress.yz);
-      store_law(particles.stress[4] + p, skip, s.stress.xz);
-      store_law(particles.stress[5] + p, skip, s.stress.xy);
-      store_law(particles.volume_ratio + p, skip, s.volume_ratio);
-      store_law(particles.energy + p, skip, s.energy);
+      store_aligned(particles.stress[0] + p, s.stress.xx);
+      store_aligned(particles.stress[1] + p, s.stress.yy);
+      store_aligned(particles.stress[2] + p, s.stress.zz);
+      store_aligned(particles.stress[3] + p, s.stress.yz);
+      store_aligned(particles.stress[4] + p, s.stress.xz);
+      store_aligned(particles.stress[5] + p, s.stress.xy);
+      store_aligned(particles.volume_ratio + p, s.volume_ratio);
+      store_aligned(particles.energy + p, s.energy);
       if constexpr (hyperelastic)
-        for (int c = 0; c < 9; ++c) store_law(particles.deformation[c] + p, skip, s.F[c / 3][c % 3]);
+        for (int c = 0; c < 9; ++c) store_aligned(particles.deformation[c] + p, s.F[c / 3][c % 3]);
 
       const LawLanes initial_volume = mass * group.inverse_density;
       if constexpr (plastic) {
         if (s.plastic_changed) {
-          store_law(particles.plastic_strain + p, skip, s.plastic_strain);
-          store_law(particles.yield_stress + p, skip, s.yield_stress);
+          store_aligned(particles.plastic_strain + p, s.plastic_strain);
+          store_aligned(particles.yield_stress + p, s.yield_stress);
           if (strength == strength_johnson_cook && material.thermal)
-            store_law(particles.temperature + p, skip, s.temperature);
+            store_aligned(particles.temperature + p, s.temperature);
           plastic_work += initial_volume * s.plastic_work;
           if (any(s.newly_failed))
             for (int lane = 0; lane < law_width; ++lane)
@@ -198,7 +177,7 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
       }
       viscous_work += initial_volume * s.viscous_work;
       // c + |v|; the second root is needed only where |v| is above what `fastest` leaves to it.
-      const LawLanes wave = sqrt(s.wave_speed_squared), moving = load_law(speeds_squared + part, skip);
+      const LawLanes wave = sqrt(s.wave_speed_squared), moving = load_aligned<LawLanes>(speeds_squared + part);
       const LawLanes left = max(fastest - wave, LawLanes{});
       if (any(moving >= left * left)) fastest = max(wave + sqrt(moving), fastest);
       // Also catches what is not a number.
@@ -206,11 +185,11 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
           sums.bad_particle < 0)
         for (int lane = law_width - 1; lane >= 0; --lane)
           if (!(s.volume_ratio[lane] > 1e-6 && s.volume_ratio[lane] < 1e6 && s.wave_speed_squared[lane] < 1e300))
-            sums.bad_particle = p + (whole ? lane : lane % law_half);
+            sums.bad_particle = p + lane;
 
       if (particles.displacement) {
-        if (particles.viscous_pressure) store_law(particles.viscous_pressure + p, skip, s.viscous_pressure);
-        for (int lane = 0; lane < (whole ? law_width : law_half); ++lane) {
+        if (particles.viscous_pressure) store_aligned(particles.viscous_pressure + p, s.viscous_pressure);
+        for (int lane = 0; lane < law_width; ++lane) {
           double* position = particles.position + 4 * (p + lane);
           const Record moved =
               load_aligned<Record>(position) + load_aligned<Record>(particles.displacement + 4 * (p + lane));
@@ -220,12 +199,12 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
       } else {
         const Symmetric<LawLanes> product =
             stress_times_volume(s.stress, initial_volume * s.volume_ratio * group.inverse_cell, s.viscous_pressure);
-        store_law(products[0] + part, skip, product.xx);
-        store_law(products[1] + part, skip, product.yy);
-        store_law(products[2] + part, skip, product.zz);
-        store_law(products[3] + part, skip, product.yz);
-        store_law(products[4] + part, skip, product.xz);
-        store_law(products[5] + part, skip, product.xy);
+        store_aligned(products[0] + part, product.xx);
+        store_aligned(products[1] + part, product.yy);
+        store_aligned(products[2] + part, product.zz);
+        store_aligned(products[3] + part, product.yz);
+        store_aligned(products[4] + part, product.xz);
+        store_aligned(products[5] + part, product.xy);
       }
     }
     if (!particles.displacement)

@@ -130,4 +130,23 @@ ogive_status ogive_field_get(const ogive_world* world, ogive_body_id id, const c
   return OGIVE_ERROR_ARGUMENT;
 }
 
+ogive_status ogive_field_view_get(const ogive_world* world, ogive_body_id id, const char* name, ogive_field_view* view) {
+  if (world->fail_field == name) {
+    const_cast<ogive_world*>(world)->message = "no such field today";
+    return OGIVE_ERROR_STATE;
+  }
+  for (const auto& field : body_of(world, id)->fields) {
+    if (field.name != name) continue;
+    view->components = field.components;
+    view->places = static_cast<std::int64_t>(field.values.size()) / field.components;
+    view->stride = field.components;
+    for (std::int32_t c = 0; c < field.components; ++c) view->component[c] = field.values.data() + c;
+    world->numbers.clear();
+    for (std::int64_t i = 0; i < view->places; ++i) world->numbers.push_back(static_cast<std::int32_t>(2 * i + 1));
+    view->number = world->numbers.data();
+    return OGIVE_OK;
+  }
+  return OGIVE_ERROR_ARGUMENT;
+}
+
 }  // extern "C"

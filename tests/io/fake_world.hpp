@@ -36,9 +36,10 @@ struct ogive_world {
   std::vector<std::string> wanted;                           // what a load asks for
   std::map<std::string, fake::Values> loaded;
   std::vector<fake::Body> bodies;
+  mutable std::vector<std::int32_t> numbers;                 // of a view: every other number is gone
 
   ogive_status fail_progress = OGIVE_OK;
   ogive_status fail_save = OGIVE_OK;  // after all arrays were put
   ogive_status fail_load = OGIVE_OK;  // after all arrays were got
-  std::string fail_field;             // ogive_field_get of this one fails
+  std::string fail_field;             // ogive_field_get and ogive_field_view_get of this one fail
 };

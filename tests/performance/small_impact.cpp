@@ -1,7 +1,7 @@
 // A small impact for the count of instructions: a steel block strikes an aluminium plate (Johnson-Cook, Mie-Grueneisen, failure),
 // second contact method, symmetry face, 8,000 particles, 30 steps.
 //
-//   ogive_small_impact linear_flip | bspline_affine | stress_last
+//   ogive_small_impact linear_flip | bspline_affine | stress_last | gimp_flip
 #include <cstdio>
 #include <cstring>
 
@@ -9,8 +9,9 @@
 
 int main(int argc, char** argv) {
   const char* const name = argc > 1 ? argv[1] : "";
-  const bool linear = std::strcmp(name, "linear_flip") == 0, last = std::strcmp(name, "stress_last") == 0;
-  if (!linear && !last && std::strcmp(name, "bspline_affine") != 0) return 2;
+  const bool linear = std::strcmp(name, "linear_flip") == 0, last = std::strcmp(name, "stress_last") == 0,
+             gimp = std::strcmp(name, "gimp_flip") == 0;
+  if (!linear && !last && !gimp && std::strcmp(name, "bspline_affine") != 0) return 2;
 
   ogive_world* world = nullptr;
   if (ogive_world_create(&world)) return 1;
@@ -22,8 +23,8 @@ int main(int argc, char** argv) {
   ogive_numerics_def numerics;
   ogive_numerics_def_init(&numerics, sizeof numerics);
   numerics.threads = 1;
-  numerics.shape_function = linear ? OGIVE_SHAPE_LINEAR : OGIVE_SHAPE_QUADRATIC_BSPLINE;
-  numerics.transfer = linear ? OGIVE_TRANSFER_FLIP : OGIVE_TRANSFER_AFFINE_FLIP;
+  numerics.shape_function = linear ? OGIVE_SHAPE_LINEAR : gimp ? OGIVE_SHAPE_GIMP : OGIVE_SHAPE_QUADRATIC_BSPLINE;
+  numerics.transfer = linear || gimp ? OGIVE_TRANSFER_FLIP : OGIVE_TRANSFER_AFFINE_FLIP;
   numerics.update_order = last ? OGIVE_UPDATE_STRESS_LAST : OGIVE_UPDATE_STRESS_FIRST;
   numerics.time_step_factor = 0.4;
 
