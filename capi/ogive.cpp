@@ -44,7 +44,7 @@ struct ogive_world {
   Model model;
   State state;
   Workspace workspace;
-  std::unique_ptr<Model> before;  // while reopened: the model as it was
+  std::unique_ptr<Model> changed;  // while reopened: the model that is to come
   bool has_grid = false;
   bool advancing = false;  // inside ogive_world_advance: the callback may not step
   ogive_log_callback log = nullptr;
@@ -136,9 +136,11 @@ void require_stage(const ogive_world* world, Stage stage, const char* call) {
   throw Error(ErrorKind::State, name + ": the world is prepared and its model frozen");
 }
 
-// For what may also be changed in a run.
-void require_changeable(const ogive_world* world, const char* call) {
-  if (world->stage != Stage::Reopened) require_stage(world, Stage::Building, call);
+// The model that what may also be changed in a run is written to.
+Model& changeable(ogive_world* world, const char* call) {
+  if (world->stage == Stage::Reopened) return *world->changed;
+  require_stage(world, Stage::Building, call);
+  return world->model;
 }
 
 void require_prepared(const ogive_world* world, const char* call) {
@@ -784,7 +786,7 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
 
 ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_def* def) {
   return guarded(world, [&] {
-    require_changeable(world, "ogive_world_set_numerics");
+    Model& model = changeable(world, "ogive_world_set_numerics");
     const ogive_numerics_def full = complete(def, "def", ogive_numerics_def_init);
     Model trial;
     trial.numerics.shape_function = static_cast<ShapeFunction>(full.shape_function);
@@ -799,7 +801,7 @@ ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_d
     trial.numerics.energy_limit = full.energy_limit;
     trial.validate_numerics();
     set_threads(world, full.threads);
-    world->model.numerics = trial.numerics;
+    model.numerics = trial.numerics;
   });
 }
 
@@ -985,7 +987,7 @@ ogive_status ogive_material_change(ogive_world* world, ogive_material_id id, con
     if (id.index < 0 || id.index >= static_cast<std::int32_t>(world->model.materials.size()))
       refuse("material: must be 0.." + std::to_string(static_cast<int>(world->model.materials.size()) - 1) + ", got " +
              std::to_string(id.index));
-    Material& material = world->model.materials[static_cast<std::size_t>(id.index)];
+    Material& material = world->changed->materials[static_cast<std::size_t>(id.index)];
     material = material_from(material.name, def);
   });
 }
@@ -1062,15 +1064,15 @@ static ContactRule rule_from(const ogive_world* world, const ogive_contact_def& 
 
 ogive_status ogive_world_set_contact(ogive_world* world, const ogive_contact_def* def) {
   return guarded(world, [&] {
-    require_changeable(world, "ogive_world_set_contact");
+    Model& model = changeable(world, "ogive_world_set_contact");
     const ogive_contact_def full = complete(def, "def", ogive_contact_def_init);
-    world->model.contact = rule_from(world, full);
+    model.contact = rule_from(world, full);
   });
 }
 
 ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id a, ogive_body_id b, const ogive_contact_def* def) {
   return guarded(world, [&] {
-    require_changeable(world, "ogive_contact_set_pair");
+    Model& model = changeable(world, "ogive_contact_set_pair");
     body_of(world, a);
     body_of(world, b);
     if (a.index == b.index) refuse("contact pair: must be two bodies, got body " + std::to_string(a.index) + " twice");
@@ -1078,7 +1080,7 @@ ogive_status ogive_contact_set_pair(ogive_world* world, ogive_body_id a, ogive_b
     pair.a = a.index;
     pair.b = b.index;
     pair.rule = rule_from(world, complete(def, "def", ogive_contact_def_init));
-    world->model.set_pair(pair);
+    model.set_pair(pair);
   });
 }
 
@@ -1161,7 +1163,7 @@ void ogive_stop_def_init(ogive_stop_def* def, size_t size) {
 
 ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def) {
   return guarded(world, [&] {
-    require_changeable(world, "ogive_world_set_stop");
+    Model& model = changeable(world, "ogive_world_set_stop");
     const ogive_stop_def full = complete(def, "def", ogive_stop_def_init);
     require_body_or_none(world, full.body, "stop body");
     if (!(full.settle_window >= 0 && std::isfinite(full.settle_window)))
@@ -1174,7 +1176,7 @@ ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def)
     stop.settle_tolerance = full.settle_tolerance;
     stop.when_stopped = full.stop_when_stopped != 0;
     stop.when_out = full.stop_when_out != 0;
-    world->model.stop = stop;
+    model.stop = stop;
   });
 }
 
@@ -1185,21 +1187,21 @@ static void require_not_advancing(const ogive_world* world, const char* call) {
 
 // Ends the changes of a reopened world.
 static void prepare_changed(ogive_world* world) {
-  Model changed = world->model;
-  changed.complete();
-  require_consistent_change(*world->before, changed, world->state);
-  adapt_state(*world->before, changed, world->state);
-  world->model = std::move(changed);
-  *world->before = world->model;  // should the next line fail, what was adapted is not adapted again
+  Model next = *world->changed;
+  next.complete();
+  require_consistent_change(world->model, next, world->state);
+  adapt_state(world->model, next, world->state);
+  // Should the next lines want memory, the same call can be made again: nothing is adapted twice.
+  std::swap(world->model, next);
   prepare_state(world->model, world->state, world->workspace);
-  world->before.reset();
+  world->changed.reset();
 }
 
 ogive_status ogive_world_reopen(ogive_world* world) {
   return guarded(world, [&] {
     require_stage(world, Stage::Ready, "ogive_world_reopen");
     require_not_advancing(world, "ogive_world_reopen");
-    world->before = std::make_unique<Model>(world->model);
+    world->changed = std::make_unique<Model>(world->model);
     world->stage = Stage::Reopened;
   });
 }

@@ -469,12 +469,12 @@ enum {
  * and freezes it. Afterwards only stepping, state access, thread count and queries are allowed. */
 OGIVE_API ogive_status ogive_world_prepare(ogive_world* world);
 
-/* Changes of a run. Opens a prepared world's model again: until the next ogive_world_prepare, which checks the changes, neither
- * stepping nor saving is allowed, but ogive_world_set_numerics, _set_contact, _set_stop, ogive_contact_set_pair and
- * ogive_material_change are. Refused by ogive_world_prepare, because what the particles carry belongs to the old value: density,
- * elastic constants, equation of state, kind of strength, failure or thermal softening, affine velocities begun or ended, the
- * update order, and a failure strain that would make failed particles whole or whole ones failed. The world then stays open and
- * can be corrected. Without a change the run goes on to the same bits. */
+/* Changes of a run. Opens a prepared world's model again: until the next ogive_world_prepare, which checks the changes,
+ * ogive_world_set_numerics, _set_contact, _set_stop, ogive_contact_set_pair and ogive_material_change are allowed, stepping and
+ * saving are not, and queries tell of the model as it was. ogive_world_prepare refuses, because what the particles carry belongs
+ * to the old value: density, elastic constants, equation of state, kind of strength, failure or thermal softening, affine
+ * velocities begun or ended, the update order, and a failure strain that would make failed particles whole or whole ones failed.
+ * The world then stays open and can be corrected. Without a change the run goes on to the same bits. */
 OGIVE_API ogive_status ogive_world_reopen(ogive_world* world);
 /* Another definition for a material of a reopened world. */
 OGIVE_API ogive_status ogive_material_change(ogive_world* world, ogive_material_id material, const ogive_material_def* def);

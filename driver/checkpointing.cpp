@@ -46,6 +46,12 @@ DriverState from_text(const std::string& text) {
   json.at("history_sum").get_to(state.history_sum);
   json.at("particle_files_written").get_to(state.particle_files_written);
   json.at("particle_files").get_to(state.particle_files);
+  // They are looked for in the output directory, and not beyond it.
+  for (const std::string& name : state.particle_files)
+    if (name.empty() || name.find('/') != std::string::npos || name == "..")
+      throw std::runtime_error("\"" + name + "\" is not the name of a particle file");
+  if (state.history_bytes < 0 || state.next_history < 0 || state.next_particles < 0 || state.particle_files_written < 0)
+    throw std::runtime_error("a count is negative");
   json.at("wall_seconds").get_to(state.wall_seconds);
   json.at("initial_velocity").get_to(state.initial_velocity);
   json.at("last_velocity").get_to(state.last_velocity);

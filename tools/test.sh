@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# All tests from nothing: packages, release build, every CTest label, then the unit tests (engine, geometry, files, scenes) and
-# those of the C interface under the address and undefined-behaviour sanitizers, and several worlds on several threads under the
-# thread sanitizer. Goes on after a failure where it can; the summary tells.
+# All tests from nothing: packages, release build, every CTest label, then the unit tests (engine, geometry, files, scenes), the
+# fuzzers' replays and the tests of the C interface under the address and undefined-behaviour sanitizers, and several worlds on
+# several threads under the thread sanitizer. Goes on after a failure where it can; the summary tells.
 #
 #   tools/test.sh [--build-dir DIR] [--jobs N] [--no-sanitizers]
 #
@@ -48,9 +48,10 @@ asan() {
     -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1 -DNDEBUG" || return 0
   phase "sanitizers: build" cmake --build "$build/asan" -j "$jobs" \
     --target ogive_unit_tests geometry_tests io_tests ogive_scene_tests ogive_capi_tests ogive_capi_good_test \
-             ogive_capi_bad_test ogive_old_client ogive_layout_c ogive_layout_fortran ogive_fortran_test || return 0
-  phase "sanitizers: unit and interface tests" ctest --test-dir "$build/asan" --output-on-failure --no-tests=error \
-    -L '^(unit|capi)$' -j "$jobs" || true
+             ogive_capi_bad_test ogive_old_client ogive_layout_c ogive_layout_fortran ogive_fortran_test \
+             ogive_mesh_fuzz ogive_particles_fuzz ogive_scene_fuzz ogive_checkpoint_fuzz ogive_interface_fuzz || return 0
+  phase "sanitizers: unit, interface, fuzz tests" ctest --test-dir "$build/asan" --output-on-failure --no-tests=error \
+    -L '^(unit|capi|fuzz)$' -j "$jobs" || true
   phase "sanitizers: scene tests" "$build/asan/bin/ogive_scene_tests" --gtest_brief=1 || true
 }
 

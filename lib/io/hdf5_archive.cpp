@@ -238,16 +238,16 @@ std::string shape_text(const std::vector<std::uint64_t>& shape, const char* sepa
 
 struct ArchiveWriter::Implementation {
   AtomicFile file;
-  hid_t hdf5 = -1;
+  Hdf5File hdf5;
   std::string manifest = std::string(kManifestTitle) + "\n";
   std::set<std::string> used;    // paths of arrays, and "<group>\n<name>" of attributes
   std::set<std::string> groups;  // "" is the root
 
   explicit Implementation(const std::string& path) : file(path), groups{""} {}
   ~Implementation() {
-    if (hdf5 < 0) return;
+    if (hdf5.id < 0) return;
     const Hdf5Session session;
-    H5Fclose(hdf5);
+    close_hdf5(hdf5);
   }
 
   // HDF5's own complaint is of no use where the disk was full: the system's reason goes first.
@@ -266,7 +266,7 @@ struct ArchiveWriter::Implementation {
     H5Pset_char_encoding(links, H5T_CSET_UTF8);
     const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation, false);
-    const Handle group(H5Gcreate2(hdf5, path.c_str(), links, creation, H5P_DEFAULT), H5Gclose);
+    const Handle group(H5Gcreate2(hdf5.id, path.c_str(), links, creation, H5P_DEFAULT), H5Gclose);
     require(group >= 0, "make the group '" + path + "'");
     groups.insert(path);
   }
@@ -286,7 +286,7 @@ struct ArchiveWriter::Implementation {
     H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
     H5Pset_obj_track_times(creation, false);
-    const hid_t dataset = H5Dcreate2(hdf5, path.c_str(), stored_type(type), space, links, creation, H5P_DEFAULT);
+    const hid_t dataset = H5Dcreate2(hdf5.id, path.c_str(), stored_type(type), space, links, creation, H5P_DEFAULT);
     require(dataset >= 0, "make the array '" + path + "'");
     return dataset;
   }
@@ -325,7 +325,7 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Format& format, cons
   {
     const Hdf5Session session;
     implementation_->hdf5 = create_hdf5(implementation_->file, kHeaderSize);
-    implementation_->require(implementation_->hdf5 >= 0, "create a file");
+    implementation_->require(implementation_->hdf5.id >= 0, "create a file");
   }
   set_attribute("", "format", std::string(format.name));
   set_attribute("", "format_version", format.version);
@@ -345,7 +345,7 @@ void ArchiveWriter::set_attribute(const std::string& group, const std::string& n
 
   const Hdf5Session session;
   self.make_group(group);
-  const Handle object(H5Gopen2(self.hdf5, group.empty() ? "/" : group.c_str(), H5P_DEFAULT), H5Gclose);
+  const Handle object(H5Gopen2(self.hdf5.id, group.empty() ? "/" : group.c_str(), H5P_DEFAULT), H5Gclose);
   self.require(object >= 0, "open the group '" + group + "'");
   std::string line = "attribute\t/" + group + "\t" + name + "\t";
   if (const auto* number = std::get_if<double>(&value)) {
@@ -443,10 +443,8 @@ void ArchiveWriter::commit() {
     const Hdf5Session session;
     header.manifest_offset = self.write_array(kManifestPath, ElementType::uint8, {self.manifest.size()},
                                               self.manifest.size(), self.manifest.data(), header.manifest_checksum);
-    self.require(H5Fflush(self.hdf5, H5F_SCOPE_GLOBAL) >= 0, "flush the file");
-    const herr_t closed = H5Fclose(self.hdf5);
-    self.hdf5 = -1;
-    self.require(closed >= 0, "close the file");
+    self.require(H5Fflush(self.hdf5.id, H5F_SCOPE_GLOBAL) >= 0, "flush the file");
+    self.require(close_hdf5(self.hdf5) >= 0, "close the file");
   }
   // HDF5 may leave gaps at the end unwritten: they must exist before they are summed.
   header.file_size = self.file.size();

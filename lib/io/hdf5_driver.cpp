@@ -131,7 +131,7 @@ Hdf5Session::~Hdf5Session() {
   }
 }
 
-hid_t create_hdf5(AtomicFile& file, hsize_t userblock) {
+Hdf5File create_hdf5(AtomicFile& file, hsize_t userblock) {
   out_of_memory = false;
   const hid_t driver = register_driver();
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -145,9 +145,16 @@ hid_t create_hdf5(AtomicFile& file, hsize_t userblock) {
     result = H5Fcreate("ogive", H5F_ACC_TRUNC, creation, access);
   if (creation >= 0) H5Pclose(creation);
   if (access >= 0) H5Pclose(access);
-  if (driver >= 0) H5FDunregister(driver);  // the open file holds it as long as it needs it
+  if (result < 0 && driver >= 0) H5FDunregister(driver);
   if (result < 0 && out_of_memory) throw std::bad_alloc();
-  return result;
+  return {result, driver};
+}
+
+herr_t close_hdf5(Hdf5File& file) {
+  const herr_t closed = H5Fclose(file.id);
+  H5FDunregister(file.driver);
+  file = {};
+  return closed;
 }
 
 }  // namespace ogive::io

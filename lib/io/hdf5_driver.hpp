@@ -28,8 +28,16 @@ class Hdf5Session {
   void* print_data_ = nullptr;
 };
 
-// Creates an HDF5 file inside `file`, its first `userblock` bytes left to us. Negative on failure. `file` must outlive
+// An open file and the driver that it goes through. The driver must stay registered until the file is closed: HDF5 1.10 gives
+// up the file's own hold on it first, and calls it after that.
+struct Hdf5File {
+  hid_t id = -1, driver = -1;
+};
+
+// Creates an HDF5 file inside `file`, its first `userblock` bytes left to us. Its id is negative on failure. `file` must outlive
 // it.
-hid_t create_hdf5(AtomicFile& file, hsize_t userblock);
+Hdf5File create_hdf5(AtomicFile& file, hsize_t userblock);
+// Negative on failure; the file is closed all the same.
+herr_t close_hdf5(Hdf5File& file);
 
 }  // namespace ogive::io

@@ -44,10 +44,11 @@ std::string shortest(double number) {
 }  // namespace
 
 ParticleList read_particle_text(const std::string& path) {
-  std::ifstream stream(path);
   std::error_code ignored;
-  if (!stream || std::filesystem::is_directory(path, ignored))
-    throw Failure(Fault::file, "cannot be read; expected a CSV file of x,y,z,volume");
+  // A device or pipe could give lines without end.
+  const bool regular = std::filesystem::is_regular_file(path, ignored);
+  std::ifstream stream(path);
+  if (!stream || !regular) throw Failure(Fault::file, "cannot be read; expected a CSV file of x,y,z,volume");
   ParticleList particles;
   std::string line;
   bool heading_possible = true;

@@ -244,4 +244,17 @@ TEST_F(Restart, refuses_while_the_run_is_still_at_work) {
   expect_same_results(scratch_ / "results", reference());
 }
 
+TEST(KeptCheckpoint, of_0_2_0_goes_on_to_what_that_version_came_to) {
+  // A ball between a wall and a free rigid block, with symmetry, gravity, friction, heat and failure, at step 60: all that save
+  // version 2 brought. tests/capi/good_test.c does the same with a file of 0.1.0.
+  const ScratchDirectory scratch;
+  const std::filesystem::path kept = std::filesystem::path(OGIVE_CLI_DATA).parent_path() / "checkpoint_0.2.0.h5";
+  const Outcome outcome = run_program(scratch.path(), {"restart", kept.string(), "-o", "results"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
+  EXPECT_EQ(summary.at("time"), 0.008);
+  // Another processor's rounding moves it by less than 1e-9.
+  EXPECT_NEAR(summary.at("bodies").at("ball").at("speed").get<double>() / 75.43808180928767, 1, 1e-9);
+}
+
 }  // namespace

@@ -114,6 +114,39 @@ TEST(Run, output_does_not_change_results) {
   EXPECT_EQ(names_in(scratch / "seldom"), (std::vector<std::string>{"history.csv", "summary.json"}));
 }
 
+TEST(Run, neither_environment_nor_current_directory_changes_results) {
+  const ScratchDirectory scratch;
+  ASSERT_EQ(run_program(scratch.path(), {"run", scene_file(), "-o", "plain"}).exit_code, 0);
+  std::filesystem::create_directory(scratch / "below");
+  write_file(scratch / "below" / "scene.toml", scene_text("two_boxes.toml", {}));
+  const Outcome other = run_in_shell(scratch / "below",
+                                     "env -u HOME OMP_NUM_THREADS=3 OMP_DYNAMIC=true OMP_SCHEDULE=dynamic LC_ALL=de_DE.UTF-8 "
+                                     "LANG=de_DE.UTF-8 TZ=Asia/Tokyo TMPDIR=/nowhere HDF5_USE_FILE_LOCKING=BEST_EFFORT "
+                                     "MALLOC_PERTURB_=165 ogive run scene.toml -o ../other");
+  ASSERT_EQ(other.exit_code, 0) << other.errors;
+  for (const std::string& name : names_in(scratch / "plain")) {
+    if (name == "summary.json" || name.rfind("checkpoint-", 0) == 0) continue;  // scene's name and wall time are in them
+    EXPECT_TRUE(read_file(scratch / "plain" / name) == read_file(scratch / "other" / name)) << name;
+  }
+}
+
+TEST(Run, writes_nothing_outside_its_directory) {
+  const ScratchDirectory scratch;
+  write_file(scratch / "scene.toml", scene_text("two_boxes.toml", {{"title = \"two boxes collide\"", "title = \"../../escape\""}}));
+  ASSERT_EQ(run_program(scratch.path(), {"run", "scene.toml", "-o", "results"}).exit_code, 0);
+  EXPECT_EQ(names_in(scratch.path()), (std::vector<std::string>{"results", "scene.toml"}));
+  // No name that becomes a file's or a group's can lead elsewhere.
+  const Outcome refused = run_program(scratch.path(), {"run", "scene.toml", "-o", "other", "--set",
+                                                       "bodies.x/y.material=soft"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(names_in(scratch.path()), (std::vector<std::string>{"results", "scene.toml"}));
+  // A device in place of particles is refused, not read without end.
+  write_file(scratch / "device.toml",
+             scene_text("two_boxes.toml", {{"box = { size = [4.0, 4.0, 4.0], centre = [-2.3, 0.0, 0.0] }\nspacing = 0.5",
+                                            "particles = \"/dev/zero\""}}));
+  EXPECT_EQ(run_program(scratch.path(), {"run", "device.toml", "-o", "other"}).exit_code, 2);
+}
+
 TEST(Run, refuses_a_directory_that_holds_a_run) {
   const ScratchDirectory scratch;
   const std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--until", "0.002"};

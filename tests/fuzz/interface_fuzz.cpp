@@ -82,7 +82,7 @@ class Caller {
     return def;
   }
 
-  void add_material() {
+  ogive_material_def material() {
     ogive_material_def def;
     ogive_material_def_init(&def, sizeof def);
     def.strength = input_.below(4);
@@ -102,8 +102,20 @@ class Caller {
     def.eos_sound_speed = input_.about(3000), def.eos_slope = input_.about(1), def.gruneisen = input_.about(1);
     def.failure_strain = input_.about(0.3);
     if (input_.one_in(2)) def.viscosity_linear = input_.about(0.05), def.viscosity_quadratic = input_.about(0.5);
+    return def;
+  }
+
+  void add_material() {
+    const ogive_material_def def = material();
     ogive_material_id id;
     see(ogive_material_add(world(), name_of(input_), &def, &id));
+  }
+
+  void change_material() {
+    if (input_.one_in(2)) see(ogive_world_reopen(world()));
+    const ogive_material_def def = material();
+    see(ogive_material_change(world(), {input_.one_in(8) ? input_.whole() : 0}, &def));
+    see(ogive_world_prepare(world()));
   }
 
   ogive_body_def body_def() {
@@ -275,7 +287,7 @@ class Caller {
   }
 
   void call() {
-    switch (input_.below(26)) {
+    switch (input_.below(28)) {
       case 0:
         return set_grid();
       case 1:
@@ -331,6 +343,11 @@ class Caller {
       case 24:
         see(ogive_world_step(world(), input_.number()));
         return;
+      case 25:
+        see(ogive_world_reopen(world()));
+        return;
+      case 26:
+        return change_material();
       default:
         see(ogive_world_set_threads(world(), input_.one_in(4) ? input_.whole() : 1));
         see(ogive_world_set_threads(world(), 1));

@@ -79,6 +79,22 @@ TEST(Change, OfHardeningIsFeltFromThePresentPlasticStrainOn) {
   EXPECT_NEAR(scene.ledger().residual_relative, unchanged.ledger().residual_relative, 5e-3);
 }
 
+TEST(Change, LeavesQueriesToTheModelAsItWasUntilItIsPrepared) {
+  // The model to come has fields that the state lacks.
+  Scene scene = impact.build();
+  scene.steps(1);
+  const auto fields = scene.all_fields();
+  ogive_material_def other = steel();
+  other.strength = OGIVE_STRENGTH_NEO_HOOKEAN;
+  reopen(scene);
+  scene.check(ogive_material_change(scene.get(), {0}, &other));
+  EXPECT_EQ(scene.all_fields(), fields);
+  double value = 0;
+  EXPECT_EQ(ogive_field_get(scene.get(), {0}, "deformation_gradient", &value, 1), OGIVE_ERROR_ARGUMENT);
+  EXPECT_EQ(ogive_world_prepare(scene.get()), OGIVE_ERROR_ARGUMENT);
+  EXPECT_EQ(scene.all_fields(), fields);
+}
+
 TEST(Change, OfTheTimeStepFactorScalesTheNextStep) {
   Scene scene = impact.build();
   scene.steps(before);
