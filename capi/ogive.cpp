@@ -1286,7 +1286,7 @@ static void step_or_break(ogive_world* world, double dt) {
   if (warned)
     tell(world, OGIVE_LOG_WARNING,
          ("the energy has grown by " + std::to_string(100 * world->state.energy_watch.largest_growth) + " % at time " +
-          std::to_string(world->state.time) + "; probable cause: " + probable_cause(world->model)).c_str());
+          std::to_string(world->state.time) + "; probable cause: " + probable_cause(world->model, world->state)).c_str());
 }
 
 ogive_status ogive_world_step(ogive_world* world, double dt) {

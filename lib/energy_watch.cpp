@@ -56,15 +56,37 @@ std::string hottest_particle(const Model& model, const State& state) {
   return text;
 }
 
+// Largest angle by which a body as a whole turns in a step, from the mean of its affine velocities; 0 without them.
+double largest_turn(const State& state) {
+  double largest = 0;
+  for (const BodyState& body : state.bodies) {
+    if (body.affine.empty()) continue;
+    double mass = 0;
+    Vector3 curl{};
+    for (const Group& group : body.groups)
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+        const double* C = &body.affine[affine_size * p];
+        const double m = body.position[4 * p + 3];
+        mass += m;
+        add(curl, times(m, {C[3 + 2] - C[6 + 1], C[6 + 0] - C[0 + 2], C[0 + 1] - C[3 + 0]}));
+      }
+    if (mass > 0) largest = std::max(largest, 0.5 * std::sqrt(dot(curl, curl)) / mass * state.last_time_step);
+  }
+  return largest;
+}
+
 }  // namespace
 
 double energy_growth(const Model& model, const State& state) { return growth_of(model, state, total_energy(model, state)); }
 
-std::string probable_cause(const Model& model) {
+std::string probable_cause(const Model& model, const State& state) {
   const Numerics& numerics = model.numerics;
   const std::string factor = std::to_string(numerics.time_step_factor);
   if (numerics.update_order == UpdateOrder::StressLastAsIs)
     return "the update order stress_last_as_is has no bound at nodes with little mass: use stress_first or stress_last";
+  if (const double turn = largest_turn(state); turn > 0.005)
+    return "a body turns by " + std::to_string(turn) + " rad a step, of which the stress first makes energy and the stress last takes "
+           "some: use a smaller time_step_factor (now " + factor + ")";
   if (numerics.shape_function == ShapeFunction::Linear && numerics.update_order == UpdateOrder::StressFirst)
     return "trilinear functions with the stress first let pressures grow in particles that lie at nodes: use quadratic B-splines, "
            "or stress_last";
@@ -104,7 +126,7 @@ bool watch_energy(const Model& model, State& state) {
                 "at time " + std::to_string(state.time) + ", step " + std::to_string(state.steps) + ", the energy has grown by " +
                     std::to_string(100 * growth) + " % of what there was and of the work done (energy_limit: " +
                     std::to_string(100 * model.numerics.energy_limit) + " %); " + hottest_particle(model, state) +
-                    "; probable cause: " + probable_cause(model));
+                    "; probable cause: " + probable_cause(model, state));
   if (growth <= model.numerics.energy_warning || watch.warning_time >= 0) return false;
   watch.warning_time = state.time;
   return true;

@@ -21,7 +21,7 @@ double energy_growth(const Model& model, const State& state);
 // the second limit.
 bool watch_energy(const Model& model, State& state);
 
-// What most likely makes this model gain energy, and what helps.
-std::string probable_cause(const Model& model);
+// What most likely makes this run gain energy, and what helps.
+std::string probable_cause(const Model& model, const State& state);
 
 }  // namespace ogive

@@ -198,16 +198,21 @@ TEST(Run, max_steps_ends_it) {
 
 TEST(Run, growing_energy_is_said_loudly_and_stops_the_run_above_the_limit) {
   const ScratchDirectory scratch;
-  // The nodal velocities as they are, USL: unstable where a node has next to no mass.
-  std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "numerics.update_order=stress_last_as_is"};
+  // A soft block turns by 0.02 rad a step, of which the stress first makes energy (docs/stability.md).
+  std::vector<std::string> command = {"run", scene_file(), "-o", "results"};
+  for (const char* setting : {"numerics.shape_function=quadratic_bspline", "numerics.energy_limit=0.05", "parameters.V0=0", "stop.time=0.5",
+                              "materials.soft.j2_power.A=1e9", "bodies.left.angular_velocity=[0, 0, 20]",
+                              "bodies.left.angular_centre=[-2.3, 0, 0]", "bodies.right.box.centre=[5.5, 0.3, 0.0]"}) {
+    command.insert(command.end(), {"--set", setting});
+  }
   const Outcome stopped = run_program(scratch.path(), command);
   EXPECT_EQ(stopped.exit_code, 3) << stopped.errors;
-  for (const char* part : {"warning: the energy has grown by ", "the computation broke down: at time ", "energy_limit: 100",
-                           "probable cause: the update order stress_last_as_is", "failed-state.h5"})
+  for (const char* part : {"warning: the energy has grown by ", "the computation broke down: at time ", "energy_limit: 5",
+                           "probable cause: a body turns by 0.0", "failed-state.h5"})
     EXPECT_NE(stopped.errors.find(part), std::string::npos) << part << "\nis not in\n" << stopped.errors;
   EXPECT_FALSE(std::filesystem::exists(scratch / "results" / "summary.json"));
 
-  command.insert(command.end(), {"--overwrite", "--set", "numerics.energy_limit=1e30", "--set", "stop.max_steps=60"});
+  command.insert(command.end(), {"--overwrite", "--set", "numerics.energy_limit=1e30"});
   const Outcome ended = run_program(scratch.path(), command);
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_NE(ended.errors.find("WARNING: the energy grew by "), std::string::npos) << ended.errors;

@@ -13,20 +13,16 @@ void hear(void* user, std::int32_t level, const char* text) {
   if (level == OGIVE_LOG_WARNING) static_cast<std::vector<std::string>*>(user)->push_back(text);
 }
 
-/// Two elastic cubes that meet with the nodal velocities as they are (USL), which have no bound where a node has next to no mass.
-void add_unstable_cubes(Scene& scene, double warning, double limit) {
-  scene.grid(1, {-10, -6, -6}, {10, 6, 6});
+/// A soft block that turns by 0.02 rad a step, of which the stress first makes 13 % of energy in a turn (docs/stability.md).
+void add_turning_block(Scene& scene, double warning, double limit) {
+  scene.grid(1, {-8, -8, -8}, {8, 8, 8});
   ogive_numerics_def numerics;
   ogive_numerics_def_init(&numerics, sizeof numerics);
-  numerics.shape_function = OGIVE_SHAPE_LINEAR;
-  numerics.transfer = OGIVE_TRANSFER_FLIP;
-  numerics.update_order = OGIVE_UPDATE_STRESS_LAST_AS_IS;
   numerics.energy_warning = warning;
   numerics.energy_limit = limit;
   scene.check(ogive_world_set_numerics(scene.get(), &numerics));
-  const ogive_material_id material = scene.material("aluminium", elastic(2.7e-3, 69e3, 0.3));
-  scene.box("left", material, {-4.1, -2, -2}, {-0.1, 2, 2}, 0.5, {100, 0, 0});
-  scene.box("right", material, {0, -2, -2}, {4, 2, 2}, 0.5, {});
+  const ogive_material_id material = scene.material("soft", elastic(2.7e-3, 690, 0.3));
+  scene.add("block", Scene::body(material, {}, {0, 0, 25}, {0.1, 0.2, 0.3}), Scene::solid(OGIVE_SOLID_BOX, {0.1, 0.2, 0.3}, {4, 4, 4}, 0.5));
 }
 
 }  // namespace
@@ -34,30 +30,30 @@ void add_unstable_cubes(Scene& scene, double warning, double limit) {
 TEST(EnergyWatch, AnUnstableRunIsWarnedOfOnceAndStoppedWithTimeParticleAndCause) {
   Scene scene;
   std::vector<std::string> told;
-  add_unstable_cubes(scene, 0.01, 1.0);
+  add_turning_block(scene, 0.01, 0.1);
   scene.check(ogive_world_set_log(scene.get(), &hear, &told));
   scene.prepare();
   told.clear();
-  EXPECT_EQ(ogive_world_advance(scene.get(), 0.1, 0, nullptr, nullptr), OGIVE_ERROR_NUMERICAL);
+  EXPECT_EQ(ogive_world_advance(scene.get(), 1.0, 0, nullptr, nullptr), OGIVE_ERROR_NUMERICAL);
   const std::string message = ogive_world_message(scene.get());
-  for (const char* part : {"at time ", "the energy has grown by ", "energy_limit: 100", "body \"", "particle ", "speed ",
-                           "probable cause: the update order stress_last_as_is"})
+  for (const char* part : {"at time ", "the energy has grown by ", "energy_limit: 10", "body \"", "particle ", "speed ",
+                           "probable cause: a body turns by 0.0"})
     EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
   EXPECT_EQ(std::count_if(told.begin(), told.end(), [](const std::string& t) { return t.find("the energy has grown by ") == 0; }), 1);
   // The broken state can be looked at: its ledger tells the same.
   const ogive_ledger ledger = scene.ledger();
-  EXPECT_GT(ledger.energy_growth, 1.0);
+  EXPECT_GT(ledger.energy_growth, 0.1);
   EXPECT_GT(ledger.energy_warning_time, 0.0);
   EXPECT_LE(ledger.energy_warning_time, ledger.energy_growth_time);
-  measured("steps until it is stopped", static_cast<double>(scene.progress().steps));  // 50
+  measured("steps until it is stopped", static_cast<double>(scene.progress().steps));  // 250
 }
 
 TEST(EnergyWatch, WithoutALimitTheRunGoesOnAndTheLedgerStillTells) {
   Scene scene;
-  add_unstable_cubes(scene, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+  add_turning_block(scene, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
   scene.prepare();
-  scene.steps(75);
-  EXPECT_GT(scene.ledger().energy_growth, 0.5);
+  scene.steps(330);
+  EXPECT_GT(scene.ledger().energy_growth, 0.1);  // measured 0.13
   EXPECT_EQ(scene.ledger().energy_warning_time, -1);
 }
 
@@ -90,16 +86,16 @@ TEST(EnergyWatch, WhatTheHostGivesAndTheWorkOfGravityAreNoGrowth) {
   scene.check(ogive_field_set(scene.get(), body, "velocity", velocity.data(), static_cast<std::int64_t>(velocity.size())));
   EXPECT_GT(scene.ledger().residual, 0.9 * 0.5 * 64 * 2.7e-3 * 50 * 50);  // no term of the ledger has it ...
   scene.steps(100);
-  measured("growth", scene.ledger().energy_growth);  // 4e-16
+  measured("growth", scene.ledger().energy_growth);  // 2e-14
   EXPECT_LT(scene.ledger().energy_growth, 1e-12);    // ... but the watch knows
   EXPECT_EQ(scene.ledger().energy_warning_time, -1);
 }
 
 TEST(EnergyWatch, ItsMemoryIsSaved) {
   Scene scene;
-  add_unstable_cubes(scene, 0.01, std::numeric_limits<double>::infinity());
+  add_turning_block(scene, 0.01, std::numeric_limits<double>::infinity());
   scene.prepare();
-  scene.steps(75);
+  scene.steps(330);
   Store store;
   store.save(scene);
   Scene loaded;
