@@ -35,7 +35,7 @@ std::filesystem::path newest_checkpoint(const std::filesystem::path& directory) 
 /// What must not depend on how often the run was interrupted.
 nlohmann::json without_machine_figures(const std::filesystem::path& directory) {
   nlohmann::json summary = read_json(directory / "summary.json");
-  for (const char* key : {"wall_seconds", "particle_steps_per_second", "peak_memory_bytes"}) summary.erase(key);
+  for (const char* key : {"wall_seconds", "particle_steps_per_second", "peak_memory_bytes", "cpu_seconds"}) summary.erase(key);
   return summary;
 }
 
