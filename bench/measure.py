@@ -56,7 +56,7 @@ class Bench:
                 continue
             ns = entry["ns"]
             if entry["name"] not in best or ns < best[entry["name"]]["ns"]:
-                best[entry["name"]] = {"ns": ns, "bytes": entry["bytes"], "operations": entry["operations"]}
+                best[entry["name"]] = {"ns": ns, "bytes": entry["bytes"], "operations": entry.get("operations", 0)}
         return best
 
     def once(self, scene, settings, threads, isa, until):
@@ -241,8 +241,8 @@ def tables(data):
             continue
         small = data["phases"][name[:-2] + "20k"]
         rows.append([name[:-3], f"{small['ns']:.1f}", f"{small['ns'] * hz * 1e-9:.0f}", f"{e['ns']:.1f}", f"{e['bytes']:.0f}",
-                     f"{100 * e['bytes'] / e['ns'] * 1e9 / copy:.0f} %", f"{e['operations']:.0f}" if e["operations"] else "",
-                     f"{100 * small['operations'] / small['ns'] * 1e9 / peak:.0f} %" if e["operations"] else ""])
+                     f"{100 * e['bytes'] / e['ns'] * 1e9 / copy:.0f} %", f"{e['operations']:.0f}" if e.get("operations") else "",
+                     f"{100 * small['operations'] / small['ns'] * 1e9 / peak:.0f} %" if e.get("operations") else ""])
     out["phases"] = table(["phase", "ns, 20 thousand", "cycles", "ns, a million", "bytes", "of copying's rate",
                            "operations", "of peak, 20 thousand"], rows)
     return out

@@ -118,7 +118,7 @@ void reserve_for(BodyState& body, std::size_t padded) {
 }
 
 // Particles that are moved at a time.
-std::int64_t piece_of(std::int64_t padded) { return std::clamp<std::int64_t>(padded, 1, 16384); }
+std::int64_t piece_of(std::int64_t padded) { return std::clamp<std::int64_t>(padded / 16, 512, 16384); }
 
 // Length of the ring through which particles are moved, in particles. An old value is needed until the last new place that
 // takes it has been read, which is at most `reach` places later: particles that have moved by a cell between binnings lie
