@@ -126,7 +126,6 @@ struct Running {
   pid_t process = -1;
   int lock = -1;
   Clock::time_point start;
-  bool timed_out = false;
 };
 
 std::string last_line(const std::filesystem::path& file) {
@@ -167,6 +166,11 @@ bool start_case(const Study& study, const CaseOptions& options, const StudyCase&
   if (running.process == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a study that is killed leaves nothing running
     if (::getppid() != parent) ::_exit(127);
+    if (options.timeout > 0) {  // processor time: a case does not fail because others kept the machine busy
+      const auto seconds = static_cast<rlim_t>(std::ceil(options.timeout));
+      const rlimit limit{seconds, seconds + 1};
+      ::setrlimit(RLIMIT_CPU, &limit);
+    }
     ::setpgid(0, 0);  // the terminal's interrupt is the study's business
     const int target = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
     if (target < 0 || ::dup2(target, STDOUT_FILENO) < 0 || ::dup2(target, STDERR_FILENO) < 0) ::_exit(127);
@@ -187,9 +191,9 @@ CaseOutcome outcome_of(const Running& running, int status, const rusage& usage, 
   outcome.memory_bytes = static_cast<int64_t>(usage.ru_maxrss) * 1024;
   outcome.directory = directory;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (running.timed_out) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
     outcome.ending = "timed out";
-    outcome.message = "not done after " + duration(outcome.wall_seconds);
+    outcome.message = "not done after " + duration(outcome.cpu_seconds) + " of processor time";
   } else if (code == kExitOk) {
     outcome.ending = "done";
   } else if (code == kExitNumerical) {
@@ -395,11 +399,6 @@ StudyRun run_cases(const Study& study, const CaseOptions& options, const std::fu
     }
     for (size_t i = 0; i < running.size();) {
       Running& at = running[i];
-      const double seconds = std::chrono::duration<double>(Clock::now() - at.start).count();
-      if (options.timeout > 0 && seconds > options.timeout && !at.timed_out) {
-        at.timed_out = true;
-        ::kill(at.process, SIGKILL);
-      }
       int status = 0;
       rusage usage{};
       if (::wait4(at.process, &status, WNOHANG, &usage) != at.process) {
