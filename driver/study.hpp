@@ -16,6 +16,7 @@ struct StudyOptions {
   int jobs = 1;
   std::optional<double> timeout;      // processor seconds a case; default: the study's
   std::vector<std::string> only;      // axis=label
+  bool pictures = true;
   bool list = false;                  // tell the cases, run none
 };
 ExitCode study(const StudyOptions& options);

@@ -376,6 +376,16 @@ StudyRun run_cases(const Study& study, const CaseOptions& options, const std::fu
     searches[number].learn(failure_of(result.cases[index]));
     search_on(number);
   };
+  // What is there comes first, so that an interrupted study shows all of it.
+  for (size_t left = waiting.size(); left > 0; --left) {
+    const size_t index = waiting.front();
+    waiting.pop_front();
+    if (recall(options.cache, options.timeout, result.cases[index])) {
+      finished(index);
+    } else {
+      waiting.push_back(index);
+    }
+  }
   while ((!waiting.empty() || !running.empty()) && !interruption) {
     bool moved = false;
     for (size_t tries = waiting.size(); tries > 0 && !waiting.empty() && running.size() < static_cast<size_t>(options.jobs); --tries) {

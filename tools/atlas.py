@@ -36,7 +36,7 @@ DOCUMENT = os.path.join(TOP, "docs", "stability.md")
 
 def run_study(program, name, output, cache, jobs, only=()):
     directory = os.path.join(output, name)
-    command = [program, "study", os.path.join(STUDIES, name + ".toml"), "--output", directory, "--cache", cache, "--jobs", str(jobs)]
+    command = [program, "study", os.path.join(STUDIES, name + ".toml"), "--output", directory, "--cache", cache, "--jobs", str(jobs), "--no-pictures"]
     for wanted in only:
         command += ["--only", wanted]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
