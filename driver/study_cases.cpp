@@ -158,7 +158,7 @@ bool start_case(const Study& study, const CaseOptions& options, const StudyCase&
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  const std::string log = (directory / "log.txt").string();
+  const std::string log = (directory / "log.txt").string(), error_log = (directory / "errors.txt").string();
   running.start = Clock::now();
   const pid_t parent = ::getpid();
   running.process = ::fork();
@@ -173,7 +173,8 @@ bool start_case(const Study& study, const CaseOptions& options, const StudyCase&
     }
     ::setpgid(0, 0);  // the terminal's interrupt is the study's business
     const int target = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (target < 0 || ::dup2(target, STDOUT_FILENO) < 0 || ::dup2(target, STDERR_FILENO) < 0) ::_exit(127);
+    const int errors = ::open(error_log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (target < 0 || errors < 0 || ::dup2(target, STDOUT_FILENO) < 0 || ::dup2(errors, STDERR_FILENO) < 0) ::_exit(127);
     ::execv("/proc/self/exe", pointers.data());
     ::_exit(127);
   }
@@ -207,7 +208,7 @@ CaseOutcome outcome_of(const Running& running, int status, const rusage& usage, 
   }
   if (outcome.ending != "done" && outcome.message.empty()) {
     outcome.message = WIFSIGNALED(status) ? std::string("ended by signal ") + std::to_string(WTERMSIG(status))
-                                          : last_line(directory / "log.txt");
+                                          : last_line(directory / "errors.txt");
     const std::string prefix = directory.string() + '/';
     for (size_t at = outcome.message.find(prefix); at != std::string::npos; at = outcome.message.find(prefix)) {
       outcome.message.erase(at, prefix.size());
@@ -425,7 +426,7 @@ StudyRun run_cases(const Study& study, const CaseOptions& options, const std::fu
         for (const Running& other : running) ::kill(other.process, SIGKILL);
         for (const Running& other : running) ::waitpid(other.process, nullptr, 0);
         throw Failure(kExitFile, "the case \"" + in_words(of.labels) + "\" could not be run: " + of.outcome.message + " (see " +
-                                     (of.outcome.directory / "log.txt").string() + ')');
+                                     (of.outcome.directory / "errors.txt").string() + ')');
       }
       finished(index);
       moved = true;
