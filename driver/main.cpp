@@ -212,8 +212,9 @@ Command study_command() {
       ("output,o", po::value<std::string>(), "directory for the results (default: the study's name + -study)")  //
       ("cache", po::value<std::string>(), "directory of the cases, which studies may share (default: cases in the output)")  //
       ("jobs,j", po::value<int64_t>()->default_value(1), "cases at once, a process each")                  //
-      ("timeout", po::value<double>(), "seconds after which a case is given up (default: the study's timeout, or none)")  //
+      ("timeout", po::value<double>(), "seconds of processor time after which a case is given up (default: the study's timeout, or none)")  //
       ("only", po::value<std::vector<std::string>>(), "axis=label: these cases alone; may be repeated")  //
+      ("no-pictures", "do not draw pictures")                                                            //
       ("list", "check the study and name its cases; nothing is run")                                       //
       ("help", "this text");
   command.call = [](const std::string& operand, const po::variables_map& values) {
@@ -226,6 +227,7 @@ Command study_command() {
     options.jobs = static_cast<int>(jobs);
     if (values.count("timeout")) options.timeout = checked_number(values, "timeout");
     if (values.count("only")) options.only = values["only"].as<std::vector<std::string>>();
+    options.pictures = values.count("no-pictures") == 0;
     options.list = values.count("list") > 0;
     return study(options);
   };

@@ -127,7 +127,7 @@ ExitCode study(const StudyOptions& options) {
   for (const CaseResult& result : results.cases) ++verdicts[result.verdict];
   std::printf("%zu cases, %zu of them were there already: %d stable, %d drift, %d fail\n", run.cases.size(), there, verdicts["stable"],
               verdicts["drifts"], verdicts["fails"]);
-  draw(directory);
+  if (options.pictures) draw(directory);
   std::printf("results are in %s: study.html, study.csv, study.json\n", directory.c_str());
   return kExitOk;
 }

@@ -126,7 +126,6 @@ struct Running {
   pid_t process = -1;
   int lock = -1;
   Clock::time_point start;
-  bool timed_out = false;
 };
 
 std::string last_line(const std::filesystem::path& file) {
@@ -159,7 +158,7 @@ bool start_case(const Study& study, const CaseOptions& options, const StudyCase&
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  const std::string log = (directory / "log.txt").string();
+  const std::string log = (directory / "log.txt").string(), error_log = (directory / "errors.txt").string();
   running.start = Clock::now();
   const pid_t parent = ::getpid();
   running.process = ::fork();
@@ -167,9 +166,15 @@ bool start_case(const Study& study, const CaseOptions& options, const StudyCase&
   if (running.process == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a study that is killed leaves nothing running
     if (::getppid() != parent) ::_exit(127);
+    if (options.timeout > 0) {  // processor time: a case does not fail because others kept the machine busy
+      const auto seconds = static_cast<rlim_t>(std::ceil(options.timeout));
+      const rlimit limit{seconds, seconds + 1};
+      ::setrlimit(RLIMIT_CPU, &limit);
+    }
     ::setpgid(0, 0);  // the terminal's interrupt is the study's business
     const int target = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (target < 0 || ::dup2(target, STDOUT_FILENO) < 0 || ::dup2(target, STDERR_FILENO) < 0) ::_exit(127);
+    const int errors = ::open(error_log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (target < 0 || errors < 0 || ::dup2(target, STDOUT_FILENO) < 0 || ::dup2(errors, STDERR_FILENO) < 0) ::_exit(127);
     ::execv("/proc/self/exe", pointers.data());
     ::_exit(127);
   }
@@ -187,9 +192,9 @@ CaseOutcome outcome_of(const Running& running, int status, const rusage& usage, 
   outcome.memory_bytes = static_cast<int64_t>(usage.ru_maxrss) * 1024;
   outcome.directory = directory;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (running.timed_out) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
     outcome.ending = "timed out";
-    outcome.message = "not done after " + duration(outcome.wall_seconds);
+    outcome.message = "not done after " + duration(outcome.cpu_seconds) + " of processor time";
   } else if (code == kExitOk) {
     outcome.ending = "done";
   } else if (code == kExitNumerical) {
@@ -203,7 +208,7 @@ CaseOutcome outcome_of(const Running& running, int status, const rusage& usage, 
   }
   if (outcome.ending != "done" && outcome.message.empty()) {
     outcome.message = WIFSIGNALED(status) ? std::string("ended by signal ") + std::to_string(WTERMSIG(status))
-                                          : last_line(directory / "log.txt");
+                                          : last_line(directory / "errors.txt");
     const std::string prefix = directory.string() + '/';
     for (size_t at = outcome.message.find(prefix); at != std::string::npos; at = outcome.message.find(prefix)) {
       outcome.message.erase(at, prefix.size());
@@ -372,6 +377,16 @@ StudyRun run_cases(const Study& study, const CaseOptions& options, const std::fu
     searches[number].learn(failure_of(result.cases[index]));
     search_on(number);
   };
+  // What is there comes first, so that an interrupted study shows all of it.
+  for (size_t left = waiting.size(); left > 0; --left) {
+    const size_t index = waiting.front();
+    waiting.pop_front();
+    if (recall(options.cache, options.timeout, result.cases[index])) {
+      finished(index);
+    } else {
+      waiting.push_back(index);
+    }
+  }
   while ((!waiting.empty() || !running.empty()) && !interruption) {
     bool moved = false;
     for (size_t tries = waiting.size(); tries > 0 && !waiting.empty() && running.size() < static_cast<size_t>(options.jobs); --tries) {
@@ -395,11 +410,6 @@ StudyRun run_cases(const Study& study, const CaseOptions& options, const std::fu
     }
     for (size_t i = 0; i < running.size();) {
       Running& at = running[i];
-      const double seconds = std::chrono::duration<double>(Clock::now() - at.start).count();
-      if (options.timeout > 0 && seconds > options.timeout && !at.timed_out) {
-        at.timed_out = true;
-        ::kill(at.process, SIGKILL);
-      }
       int status = 0;
       rusage usage{};
       if (::wait4(at.process, &status, WNOHANG, &usage) != at.process) {
@@ -416,7 +426,7 @@ StudyRun run_cases(const Study& study, const CaseOptions& options, const std::fu
         for (const Running& other : running) ::kill(other.process, SIGKILL);
         for (const Running& other : running) ::waitpid(other.process, nullptr, 0);
         throw Failure(kExitFile, "the case \"" + in_words(of.labels) + "\" could not be run: " + of.outcome.message + " (see " +
-                                     (of.outcome.directory / "log.txt").string() + ')');
+                                     (of.outcome.directory / "errors.txt").string() + ')');
       }
       finished(index);
       moved = true;

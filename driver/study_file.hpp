@@ -72,7 +72,7 @@ struct StudyVerdict {
 struct Study {
   std::filesystem::path file, scene;
   std::string title;
-  double timeout = 0;  // seconds; 0: none
+  double timeout = 0;  // seconds of processor time; 0: none
   std::vector<StudySetting> settings;
   std::vector<StudySweep> sweeps;
   std::vector<StudyMeasure> measures;

@@ -16,6 +16,7 @@ import json
 import os
 import subprocess
 import sys
+import textwrap
 
 import numpy as np
 
@@ -35,7 +36,7 @@ DOCUMENT = os.path.join(TOP, "docs", "stability.md")
 
 def run_study(program, name, output, cache, jobs, only=()):
     directory = os.path.join(output, name)
-    command = [program, "study", os.path.join(STUDIES, name + ".toml"), "--output", directory, "--cache", cache, "--jobs", str(jobs)]
+    command = [program, "study", os.path.join(STUDIES, name + ".toml"), "--output", directory, "--cache", cache, "--jobs", str(jobs), "--no-pictures"]
     for wanted in only:
         command += ["--only", wanted]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
@@ -90,8 +91,8 @@ def draw_map(rows, which, titles, path):
             current = 0
         lines[-1].append(name)
         current += len(columns[name]) + 1
-    figure = plt.figure(figsize=(13, len(lines) * (1.6 + 0.2 * len(names))))
-    outer = figure.add_gridspec(len(lines), 1, hspace=0.55)
+    figure = plt.figure(figsize=(13, len(lines) * (1.3 + 0.18 * len(names))))
+    outer = figure.add_gridspec(len(lines), 1, hspace=0.32 if len(names) > 10 else 0.6)
     for line, members in enumerate(lines):
         spare = max(0, 31 - sum(len(columns[name]) + 1 for name in members))
         ratios = [len(columns[name]) for name in members] + ([spare] if spare else [])
@@ -112,7 +113,7 @@ def draw_map(rows, which, titles, path):
                     axis.text(x, y, text, ha="center", va="center", fontsize=5.5)
             axis.set_xticks(range(len(columns[name])), columns[name], rotation=60, ha="right", fontsize=6)
             axis.set_yticks(range(len(names)), names if i == 0 else [""] * len(names), fontsize=6.5)
-            axis.set_title(titles[name], fontsize=7, wrap=True)
+            axis.set_title(textwrap.fill(titles[name], max(9, 4 * len(columns[name]))), fontsize=7)
             axis.tick_params(length=0)
             for side in axis.spines.values():
                 side.set_visible(False)
@@ -121,7 +122,7 @@ def draw_map(rows, which, titles, path):
             axis.grid(which="minor", color="white", linewidth=1)
             axis.tick_params(which="minor", length=0)
     handles = [plt.matplotlib.patches.Patch(color=colour, label=verdict) for verdict, colour in zip(VERDICTS, COLOURS)]
-    figure.legend(handles=handles, loc="upper right", ncols=3, bbox_to_anchor=(0.9, 0.99 if len(lines) > 1 else 1.05), fontsize=8)
+    figure.legend(handles=handles, loc="lower left", ncols=3, bbox_to_anchor=(0.12, 0.92 if len(lines) > 1 else 0.98), fontsize=8)
     figure.savefig(path, dpi=110)
     plt.close(figure)
     print(path)

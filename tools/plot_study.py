@@ -68,8 +68,11 @@ def panels(count):
     return figure, list(axes.flat)
 
 
+ENDINGS = ["png", "svg"]
+
+
 def save(figure, base, name):
-    for ending in ("png", "svg"):
+    for ending in ENDINGS:
         figure.savefig(f"{base}-{name}.{ending}", dpi=110)
     plt.close(figure)
     print(f"{base}-{name}.png")
@@ -185,7 +188,10 @@ def main():
     parser.add_argument("directory", help="of a study, with study.json")
     parser.add_argument("--measure", help="whose error is drawn (default: the study's own choice)")
     parser.add_argument("-o", "--output", metavar="BASE", help="beginning of the pictures' names (default DIR/study)")
+    parser.add_argument("--png", action="store_true", help="PNG alone")
     arguments = parser.parse_args()
+    if arguments.png:
+        ENDINGS.remove("svg")
     study = Study(arguments.directory)
     base = arguments.output or os.path.join(arguments.directory, "study")
     measures = {measure["name"]: measure for measure in study.json["measures"]}
