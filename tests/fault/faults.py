@@ -62,7 +62,7 @@ class Bench:
                                 preexec_fn=before if limit else None, env=dict(os.environ, **environment), cwd=self.work)
 
     def finish(self, process, expected):
-        output, errors = process.communicate(timeout=300)
+        output, errors = process.communicate(timeout=60)
         code = process.returncode
         expect(code in expected, f"exit code {code}, expected {expected}; it said: {errors.strip()[-300:]}")
         if code not in (0, 75, -signal.SIGKILL) and code > 0:
@@ -176,7 +176,7 @@ class Bench:
         while high - low > 1 << 16:
             middle = (low + high) // 2
             process = self.start(command, middle)
-            process.communicate(timeout=300)
+            process.communicate(timeout=60)
             low, high = (low, middle) if process.returncode in expected else (middle, high)
         return high
 
@@ -192,7 +192,7 @@ class Bench:
         directory = self.new()
         limit = self.random.randint(self.memory[0], int(1.01 * self.memory[1]))
         process = self.start(self.command(directory, *large), limit)
-        _, errors = process.communicate(timeout=300)
+        _, errors = process.communicate(timeout=60)
         # The OpenMP library ends the program by itself, with 1, where it finds no memory.
         expect(process.returncode in (0, 6) or process.returncode == 1 and "libgomp: Out of memory" in errors,
                f"exit code {process.returncode}; it said: {errors}")
