@@ -81,7 +81,7 @@ namespace {
 
 const std::int32_t methods_with_normals[] = {
     OGIVE_CONTACT_HUANG_FIRST,      OGIVE_CONTACT_HUANG_SECOND,    OGIVE_CONTACT_YORK,    OGIVE_CONTACT_HU_CHEN,
-    OGIVE_CONTACT_BARDENHAGEN_2000, OGIVE_CONTACT_BARDENHAGEN_2001, OGIVE_CONTACT_PAN_2008};
+    OGIVE_CONTACT_BARDENHAGEN_2000, OGIVE_CONTACT_BARDENHAGEN_2001, OGIVE_CONTACT_PAN_2008, OGIVE_CONTACT_PERSISTENT};
 
 // A free rigid ball of radius 3 that spins strikes an elastic block beside its middle, with friction.
 struct Strike {
