@@ -23,6 +23,7 @@
 #include "archive.hpp"
 #include "audit.hpp"
 #include "change.hpp"
+#include "contact/contact.hpp"
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
 #include "energy_watch.hpp"
@@ -392,6 +393,15 @@ SolidDef solid_of(const ogive_solid_def* def) {
   solid.reference = vector_of(full.reference);
   solid.spacing = vector_of(full.spacing);
   return solid;
+}
+
+SurfaceDef surface_of(const SolidDef& solid) {
+  SurfaceDef surface;
+  surface.kind = static_cast<SurfaceKind>(solid.shape);
+  surface.size = solid.size;
+  surface.origin = solid.centre;
+  surface.axes = solid_axes(solid);
+  return surface;
 }
 
 // Two bodies overlap where they together fill a node's shape function clearly more than a solid can. Lattices fill a node
@@ -1018,7 +1028,41 @@ ogive_status ogive_body_add_solid(ogive_world* world, const char* name, const og
     const ParticleCloud cloud = fill_solid(solid_of(solid));
     const ogive_body_id added = add_particles(world, name, def, static_cast<std::int64_t>(cloud.volume.size()),
                                               cloud.xyz.data(), cloud.volume.data());
+    world->model.bodies[added.index].surface = surface_of(solid_of(solid));
     if (id) *id = added;
+  });
+}
+
+ogive_status ogive_body_set_surface(ogive_world* world, ogive_body_id body, int64_t vertex_count, const double* xyz,
+                                    int64_t triangle_count, const int32_t* corners) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_body_set_surface");
+    body_of(world, body);
+    constexpr std::int64_t most = std::int64_t{1} << 29;
+    if (vertex_count < 4 || vertex_count > most)
+      refuse("vertex_count: must be 4.." + std::to_string(most) + ", got " + std::to_string(vertex_count));
+    if (triangle_count < 4 || triangle_count > most)
+      refuse("triangle_count: must be 4.." + std::to_string(most) + ", got " + std::to_string(triangle_count));
+    require_pointer(xyz, "xyz");
+    require_pointer(corners, "corners");
+    SurfaceDef surface;
+    surface.kind = SurfaceKind::Triangles;
+    surface.vertices.assign(xyz, xyz + 3 * vertex_count);
+    surface.corners.assign(corners, corners + 3 * triangle_count);
+    check_triangles(surface.vertices, surface.corners);
+    world->model.bodies[body.index].surface = std::move(surface);
+  });
+}
+
+ogive_status ogive_body_set_surface_solid(ogive_world* world, ogive_body_id body, const ogive_solid_def* solid) {
+  return guarded(world, [&] {
+    require_stage(world, Stage::Building, "ogive_body_set_surface_solid");
+    body_of(world, body);
+    SolidDef def = solid_of(solid);
+    def.lattice = Lattice::Cartesian;
+    def.spacing = {1, 1, 1};
+    exact_volume(def);
+    world->model.bodies[body.index].surface = surface_of(def);
   });
 }
 
@@ -1215,6 +1259,8 @@ ogive_status ogive_world_prepare(ogive_world* world) {
       if (!world->has_grid)
         throw Error(ErrorKind::State, "ogive_world_prepare: the grid must be set (ogive_world_set_grid)");
       world->model.complete();
+      if (!contact_needs(world->model).surface)
+        for (Body& body : world->model.bodies) body.surface = {};  // no rule asks for it
       refuse_overlap(world->model, world->state);
       select_loaded_particles(world->model, world->state);
       for (std::size_t i = 0; i < world->model.loads.size(); ++i)

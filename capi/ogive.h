@@ -371,6 +371,18 @@ OGIVE_API ogive_status ogive_body_add_solid(ogive_world* world, const char* name
 OGIVE_API ogive_status ogive_solid_particles(ogive_world* world, const ogive_solid_def* solid, int64_t* count, double* xyz,
                                              double* volume);
 
+/* The surface of a body for OGIVE_DETECTION_SURFACE, as it lies in the world now: vertex_count >= 4 positions
+ * xyz[3 * vertex_count] [L], finite, and triangle_count >= 4 triangles corners[3 * triangle_count] of vertices numbered from 0,
+ * counter-clockwise from outside. It must be closed and oriented, each edge shared by two triangles; what ogive_mesh_check
+ * accepts is (ogive_mesh_surface gives it). A body that symmetry faces cut is given whole, as its particles are. A rigid body
+ * carries it with its motion, a deformable one moves the vertices with its own velocities. A rigid body of
+ * ogive_body_add_solid has its exact surface without this call. Before ogive_world_prepare; another call replaces it. */
+OGIVE_API ogive_status ogive_body_set_surface(ogive_world* world, ogive_body_id body, int64_t vertex_count, const double* xyz,
+                                              int64_t triangle_count, const int32_t* corners);
+/* The same from a built-in solid, exact with sharp tip and edges, for a rigid body given by its particles; lattice and spacing
+ * are not looked at. */
+OGIVE_API ogive_status ogive_body_set_surface_solid(ogive_world* world, ogive_body_id body, const ogive_solid_def* solid);
+
 /* ----------------------------------------------------------------------------------------------------------- contact */
 
 enum {
@@ -394,8 +406,12 @@ enum {
 };
 enum {
   OGIVE_DETECTION_SHARED_NODE = 0, /* the papers: both bodies reach the node */
-  OGIVE_DETECTION_GAP = 1          /* and the bodies' nearest sides at the node, measured along the normal, are closer than
+  OGIVE_DETECTION_GAP = 1,         /* and the bodies' nearest sides at the node, measured along the normal, are closer than
                                       gap_offset cells (docs/theory.md) */
+  OGIVE_DETECTION_SURFACE = 2      /* normal and gap from the signed distance to the true surface of one of the bodies (or to
+                                      the wall); `normal` and `master` are not used but where two bodies of one kind both
+                                      have a surface: the master's is taken, or the first body's. See
+                                      ogive_body_set_surface */
 };
 /* A rule of contact. */
 typedef struct ogive_contact_def {
@@ -407,7 +423,7 @@ typedef struct ogive_contact_def {
   double friction;      /* Coulomb coefficient [-] >= 0. Default 0 */
   int32_t detection;    /* OGIVE_DETECTION_*. Default gap */
   int32_t reserved0;
-  double gap_offset;    /* [-] cells, -2..2. Default 0.3: at 0 bodies that just touch chatter */
+  double gap_offset;    /* [-] cells, -2..2, with OGIVE_DETECTION_GAP. Default 0.3: at 0 bodies that just touch chatter */
 } ogive_contact_def;
 OGIVE_API void ogive_contact_def_init(ogive_contact_def* def, size_t size);
 /* The rule for all pairs; call before bodies or after, but before ogive_world_prepare. */
@@ -433,7 +449,8 @@ typedef struct ogive_wall_def {
   double point[3];    /* [L] on the plane. Default 0 */
   double normal[3];   /* [-] towards the bodies, any length > 0. Default (0,0,1) */
   double friction;    /* Coulomb coefficient [-] >= 0. Default 0 */
-  int32_t detection;  /* OGIVE_DETECTION_*. Default gap: between the body's surface at the node and the plane */
+  int32_t detection;  /* OGIVE_DETECTION_*. Default gap: between the body's surface at the node and the plane. Surface: no
+                         body needs one, particles meet the plane itself */
   int32_t reserved0;
   double gap_offset;  /* [-] cells, -2..2. Default 0.3 */
 } ogive_wall_def;

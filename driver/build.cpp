@@ -161,11 +161,16 @@ class Builder {
       require(ogive_body_add_particle_file(world_, body.name.c_str(), &def, file->file.c_str(), &id),
               path + ".particles");
     } else {
-      const ParticleList particles = particles_of_mesh(body, path);
+      const FilledMesh filled = mesh_of(body, path);
+      const ParticleList& particles = filled.particles;
       require(ogive_body_add_particles(world_, body.name.c_str(), &def,
                                        static_cast<int64_t>(particles.volumes.size()), particles.positions.data(),
                                        particles.volumes.data(), &id),
               path);
+      require(ogive_body_set_surface(world_, id, static_cast<int64_t>(filled.vertices.size() / 3),
+                                     filled.vertices.data(), static_cast<int64_t>(filled.corners.size() / 3),
+                                     filled.corners.data()),
+              path + ".mesh");
     }
     body_ids_.push_back(id);
     if (!body.motion.empty()) set_motion(body, id, path);
@@ -183,10 +188,10 @@ class Builder {
             path + ".motion");
   }
 
-  ParticleList particles_of_mesh(const BodyScene& body, const std::string& path) {
+  FilledMesh mesh_of(const BodyScene& body, const std::string& path) {
     FilledMesh filled = fill_mesh(std::get<MeshShape>(body.shape), scene_.place(path + ".mesh"));
     if (filled.repaired) notes_.push_back("mesh of body " + body.name + ":\n" + filled.report);
-    return std::move(filled.particles);
+    return filled;
   }
 
   ogive_contact_def contact_def(const ContactScene& contact) const {

@@ -66,6 +66,13 @@ FilledMesh fill_mesh(const MeshShape& shape, const std::string& place) {
   require_mesh_ok(ogive_mesh_voxelise(mesh.get(), &fill, &count, filled.particles.positions.data(),
                                       filled.particles.volumes.data()),
                   mesh, place);
+  int64_t vertices = 0, triangles = 0;
+  require_mesh_ok(ogive_mesh_surface(mesh.get(), &fill, &vertices, &triangles, nullptr, nullptr), mesh, place);
+  filled.vertices.resize(static_cast<size_t>(3 * vertices));
+  filled.corners.resize(static_cast<size_t>(3 * triangles));
+  require_mesh_ok(ogive_mesh_surface(mesh.get(), &fill, &vertices, &triangles, filled.vertices.data(),
+                                     filled.corners.data()),
+                  mesh, place);
   return filled;
 }
 

@@ -11,6 +11,8 @@ namespace driver {
 
 struct FilledMesh {
   ParticleList particles;
+  std::vector<double> vertices;   // of the surface, three coordinates each
+  std::vector<int32_t> corners;   // three vertices a triangle
   std::string report;  // what was read and found, in lines
   bool repaired = false;
 };

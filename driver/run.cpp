@@ -250,6 +250,7 @@ class Simulation {
     if (steps > 0) {
       std::printf("broken down; making the state before it by %lld steps from the last checkpoint or the start\n",
                    static_cast<long long>(steps));
+      std::fflush(stdout);  // before what standard error will say
       const auto asked_to_end = [](ogive_world*, void*) -> int32_t { return signal_received != 0; };
       require_ok(ogive_world_advance(world.get(), scene_.stop.time, steps, asked_to_end, nullptr), world.get());
     }

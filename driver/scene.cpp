@@ -163,7 +163,9 @@ void read_contact_law(const Section& section, ContactScene& rule) {
   const auto method =
       section.optional_choice("method", named(ogive_contact_method_count(), ogive_contact_method_name));
   const auto detection = section.optional_choice(
-      "detection", {{"shared_node", OGIVE_DETECTION_SHARED_NODE}, {"gap", OGIVE_DETECTION_GAP}});
+      "detection", {{"shared_node", OGIVE_DETECTION_SHARED_NODE},
+                    {"gap", OGIVE_DETECTION_GAP},
+                    {"surface", OGIVE_DETECTION_SURFACE}});
   const Range offset = {[](double value) { return value >= -2 && value <= 2; }, "between -2 and 2 (cells)"};
   const auto friction = section.optional_number("friction", kNotNegative);
   const auto gap_offset = section.optional_number("gap_offset", offset);

@@ -61,6 +61,9 @@ void measure_surface(const Surface& surface, ogive_mesh_info& info);
 // Positions (three each) of the particles in the world.
 std::vector<double> voxelise(const Surface& surface, const ogive_voxelise_def& def);
 
+// Its vertices where the voxelisation puts the mesh.
+std::vector<double> placed_vertices(const Surface& surface, const ogive_voxelise_def& def);
+
 // Numbers in messages: std::to_chars, so that the locale has no say.
 inline std::string text_of(double value, int digits = 6) {
   char buffer[40];

@@ -232,4 +232,35 @@ ogive_status ogive_mesh_voxelise(const ogive_mesh* mesh, const ogive_voxelise_de
   });
 }
 
+ogive_status ogive_mesh_surface(const ogive_mesh* mesh, const ogive_voxelise_def* def, int64_t* vertex_count,
+                                int64_t* triangle_count, double* xyz, int32_t* corners) {
+  return run(mesh, [&] {
+    const ogive_voxelise_def full = complete(def, "def", ogive_voxelise_def_init);
+    expect_pointer(vertex_count, "vertex_count");
+    expect_pointer(triangle_count, "triangle_count");
+    if (!xyz != !corners) refuse("xyz and corners: expected both NULL or neither");
+    expect_filled(*mesh);
+    if (!mesh->info.checked) {
+      throw Refusal(OGIVE_ERROR_STATE, "the mesh was not accepted: call ogive_mesh_check before ogive_mesh_surface");
+    }
+    const std::vector<double> placed = ogive::geometry::placed_vertices(mesh->surface, full);
+    const auto vertices = static_cast<int64_t>(placed.size() / 3);
+    const auto facets = static_cast<int64_t>(mesh->surface.facets.size());
+    if (!xyz) {
+      *vertex_count = vertices;
+      *triangle_count = facets;
+      return;
+    }
+    const auto expect_count = [](const char* name, int64_t got, int64_t expected) {
+      if (got == expected) return;
+      refuse(std::string("*") + name + " = " + std::to_string(got) + ": expected " + std::to_string(expected) +
+             ", as the first call gives it");
+    };
+    expect_count("vertex_count", *vertex_count, vertices);
+    expect_count("triangle_count", *triangle_count, facets);
+    std::copy(placed.begin(), placed.end(), xyz);
+    for (const ogive::geometry::Corners& facet : mesh->surface.facets) corners = std::copy(facet.begin(), facet.end(), corners);
+  });
+}
+
 }  // extern "C"

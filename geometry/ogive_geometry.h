@@ -147,6 +147,15 @@ OGIVE_API void ogive_voxelise_def_init(ogive_voxelise_def* def, size_t size);
 OGIVE_API ogive_status ogive_mesh_voxelise(const ogive_mesh* mesh, const ogive_voxelise_def* def, int64_t* count,
                                            double* xyz, double* volume);
 
+/* The surface of a checked mesh where ogive_mesh_voxelise puts its particles (axis, reference and position of def; the lattice
+ * is not looked at), as ogive_body_set_surface takes it. First call with xyz = corners = NULL to learn *vertex_count and
+ * *triangle_count, then with these and room for them: xyz[3 * vertex_count] [L], corners[3 * triangle_count] vertex numbers
+ * from 0, counter-clockwise from outside.
+ *   OGIVE_ERROR_STATE     the mesh was not accepted by ogive_mesh_check
+ *   OGIVE_ERROR_ARGUMENT  a count is another than the first call gave */
+OGIVE_API ogive_status ogive_mesh_surface(const ogive_mesh* mesh, const ogive_voxelise_def* def, int64_t* vertex_count,
+                                          int64_t* triangle_count, double* xyz, int32_t* corners);
+
 #ifdef __cplusplus
 }
 #endif

@@ -285,4 +285,16 @@ std::vector<double> voxelise(const Surface& surface, const ogive_voxelise_def& d
   return xyz;
 }
 
+std::vector<double> placed_vertices(const Surface& surface, const ogive_voxelise_def& def) {
+  const Rotation body = rotation_of(def.axis, "axis", def.reference, "reference");
+  const Vec3 position = vector_field(def.position, "position");
+  std::vector<double> xyz;
+  xyz.reserve(3 * surface.vertices.size());
+  for (const Vec3& p : surface.vertices) {
+    const Vec3 placed = body.apply(p);
+    for (int d = 0; d < 3; ++d) xyz.push_back(placed[d] + position[d]);
+  }
+  return xyz;
+}
+
 }  // namespace ogive::geometry

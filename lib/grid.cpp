@@ -622,6 +622,8 @@ std::int64_t Workspace::memory_bytes() const {
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
                        bytes(driven) + bytes(load_sums);
   for (const BlockContacts& block : block_contacts) total += bytes(block.fields) + bytes(block.pairs) + bytes(block.nodes);
+  for (const PlacedSurface& placed : surfaces) total += placed.surface.memory_bytes();
+  total += points.memory_bytes();
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
   return total;
 }

@@ -13,6 +13,7 @@
 
 #include "aligned.hpp"
 #include "contact/nodes.hpp"
+#include "contact/points.hpp"
 #include "model.hpp"
 #include "rigid/rigid_motion.hpp"
 #include "state.hpp"
@@ -27,6 +28,15 @@ struct Slot {
   std::int32_t field = 0;
   std::int32_t contact = -1;  // index of its contact records, in units of blocks; -1: none
   std::int32_t rigid = -1;    // index in Workspace::rigid; -1: deformable
+};
+
+// A body's surface in a step.
+struct PlacedSurface {
+  Surface surface;
+  bool used = false;
+  bool moved = false;             // turn and shift are not the identity
+  Matrix3 turn{};                 // rows
+  Vector3 shift{}, lower{}, upper{};  // bounds: in the world
 };
 
 // A group of particles with its place on the grid.
@@ -62,7 +72,7 @@ struct ContactNeeds {
   bool any = false;           // some pair of bodies has fields of its own, or there is a wall
   bool start = false;         // some method acts at the beginning of the step
   bool start_kept = false;    // and the particles never see it
-  bool stress = false, memory = false, occupied = false, cloud = false;
+  bool stress = false, memory = false, occupied = false, cloud = false, surface = false;
 };
 
 // A node beyond a mirror face and its image inside.
@@ -117,6 +127,8 @@ struct Workspace {
   ContactNeeds contact_needs;
   std::vector<BlockContacts> block_contacts;  // of this step, one a mixed block (at least)
   std::vector<std::int32_t> slot_links_begin, slot_links;  // links by slot that they reach; where a rule asks for particles
+  std::vector<PlacedSurface> surfaces;        // by body; empty where no rule asks for one
+  ContactPoints points;                       // of this step, where a rule asks for surfaces
   std::vector<RigidMotion> rigid;             // of this step, in the order of the rigid bodies
   double rigid_speed = 0;                     // the fastest particle of them
   AlignedVector<NodeRecord> filter;           // XPIC: one entry a node

@@ -9,6 +9,7 @@
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
 #include "error.hpp"
+#include "surface/meeting.hpp"
 
 namespace ogive {
 namespace {
@@ -213,7 +214,7 @@ void Model::validate_contact(const ContactRule& rule, const char* where) const {
   const std::string prefix(where);
   require_choice(prefix + "method", rule.method, contact_method_count());
   require_choice(prefix + "normal", rule.normal, normal_rule_count());
-  require_choice(prefix + "detection", rule.detection, 2);
+  require_choice(prefix + "detection", rule.detection, 3);
   require_not_negative(prefix + "friction", rule.friction);
   require(rule.gap_offset >= -2 && rule.gap_offset <= 2, prefix + "gap_offset", "-2..2", rule.gap_offset);
 }
@@ -294,8 +295,36 @@ void Model::complete() {
                                                  "alone)");
         }
   }
+  for (std::size_t a = 0; a < bodies.size() && own_fields; ++a)
+    for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+      const ContactRule& rule = rule_of(static_cast<int>(a), static_cast<int>(b));
+      if (!by_surface(rule) || (bodies[a].prescribed() && bodies[b].prescribed())) continue;
+      if (surface_owner(*this, static_cast<int>(a), static_cast<int>(b)) < 0)
+        throw Error(ErrorKind::Argument, "contact detection: \"surface\" needs the surface of \"" + bodies[a].name +
+                                             "\" or \"" + bodies[b].name +
+                                             "\": a built-in solid that is rigid, or triangles (ogive_body_set_surface)");
+    }
   if (!deformable && !std::isfinite(numerics.maximum_time_step))
     throw Error(ErrorKind::Argument, "maximum_time_step: must be given where every body is rigid (no wave limits the step)");
+}
+
+static void exchange_surface(Archive& a, const std::string& at, SurfaceDef& surface) {
+  a.value(at + "kind", surface.kind);
+  if (surface.kind == SurfaceKind::None) return;
+  if (surface.kind == SurfaceKind::Triangles) {
+    a.resizable(at + "vertices", surface.vertices, std::int64_t{1} << 31);
+    a.resizable(at + "corners", surface.corners, std::int64_t{1} << 31);
+    if (a.loading() && (surface.vertices.size() % 3 != 0 || surface.corners.size() % 3 != 0))
+      throw Error(ErrorKind::Format, at + "vertices and corners: expected three numbers each");
+    if (a.loading()) check_triangles(surface.vertices, surface.corners);
+    return;
+  }
+  if (static_cast<int>(surface.kind) < 0 || surface.kind > SurfaceKind::Triangles)
+    throw Error(ErrorKind::Format, at + "kind: expected -1..4, found " + std::to_string(static_cast<int>(surface.kind)));
+  a.value(at + "size", surface.size);
+  a.value(at + "origin", surface.origin);
+  const char* const names[] = {"axis_x", "axis_y", "axis_z"};
+  for (int k = 0; k < 3; ++k) a.value(at + names[k], surface.axes[k]);
 }
 
 void Model::exchange(Archive& a) {
@@ -390,6 +419,7 @@ void Model::exchange(Archive& a) {
     a.value(at + "material", bodies[i].material);
     if (a.version() == 1) continue;
     a.value(at + "formulation", bodies[i].formulation);
+    if (a.version() >= 3) exchange_surface(a, at + "surface/", bodies[i].surface);
     if (!bodies[i].rigid()) continue;
     a.value(at + "cut", bodies[i].cut);
     a.value(at + "own_inertia", bodies[i].own_inertia);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "shape/gimp.hpp"
+#include "surface/surface.hpp"
 #include "vector3.hpp"
 
 namespace ogive {
@@ -46,7 +47,7 @@ enum class NormalRule : std::int32_t {
   LogisticRegression = 4
 };
 enum class Formulation : std::int32_t { Deformable = 0, RigidFree = 1, RigidPrescribed = 2 };
-enum class Detection : std::int32_t { SharedNode = 0, Gap = 1 };
+enum class Detection : std::int32_t { SharedNode = 0, Gap = 1, Surface = 2 };
 enum class Region : std::int32_t { Box = 0, OutsideCylinder = 1, Everywhere = 2 };
 enum class LoadKind : std::int32_t { Acceleration = 0, Traction = 1, Velocity = 2 };
 
@@ -151,6 +152,10 @@ struct Body {
   Vector3 reference{};         // prescribed: the point that moves with `velocity`, at time 0
   std::vector<MotionKnot> motion;
 
+  SurfaceDef surface;          // none: it has none
+
+  // Whether contact can use it: a deformable body carries vertices.
+  bool has_surface() const { return surface.given() && (rigid() || surface.kind == SurfaceKind::Triangles); }
   bool rigid() const { return formulation != Formulation::Deformable; }
   bool prescribed() const { return formulation == Formulation::RigidPrescribed; }
 };

@@ -6,6 +6,7 @@
 
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
+#include "surface/meeting.hpp"
 #include "time_step.hpp"
 
 namespace ogive {
@@ -61,8 +62,11 @@ void describe_rule(std::string& text, const ContactRule& rule, const std::string
   const ContactMethodDef& method = contact_method(rule.method);
   std::string details;
   if (method.needs_normal) {
-    if (!wall) details += std::string("; normals: ") + normal_rule(rule.normal).name;
-    details += rule.detection == Detection::Gap ? "; where the gap is closed" : "; at shared nodes";
+    const bool surface = rule.detection == Detection::Surface;
+    if (!wall) details += std::string("; normals: ") + (surface ? "of the true surface" : normal_rule(rule.normal).name);
+    details += surface                                  ? "; where what is felt reaches the surface"
+               : rule.detection == Detection::Gap ? "; where the gap is closed"
+                                                        : "; at shared nodes";
     char offset[48];
     std::snprintf(offset, sizeof offset, " (offset %.3g cells)", rule.gap_offset);
     if (rule.detection == Detection::Gap) details += offset;
@@ -74,6 +78,8 @@ void describe_rule(std::string& text, const ContactRule& rule, const std::string
   }
   if (method.has_friction && rule.friction == 0) details += "; friction left out (coefficient 0)";
   line(text, "%s: %s, %s%s", what.c_str(), method.name, method.summary, details.c_str());
+  if (by_surface(rule) && method.at_end == method.at_start)
+    line(text, "  caution: this method holds bodies that part, which adds energy where contact is by the surface");
   if (!method.has_friction && rule.friction > 0)
     line(text, "  caution: this method has no friction; the coefficient %.3g is not used", rule.friction);
 }

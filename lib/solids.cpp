@@ -390,6 +390,12 @@ double ogive_radius_at(double radius, double caliber_radius_head, double distanc
   return std::max(0.0, std::sqrt(arc * arc - to_shank * to_shank) - (arc - radius));
 }
 
+std::array<std::array<double, 3>, 3> solid_axes(const SolidDef& solid) {
+  validate(solid);
+  const Axes axes = axes_of(solid);
+  return {axes.x, axes.y, axes.z};
+}
+
 double exact_volume(const SolidDef& solid) {
   validate_size(solid);
   const auto [a, b, c] = solid.size;

@@ -39,6 +39,9 @@ constexpr std::int64_t max_solid_particles = std::int64_t{1} << 31;
 ParticleCloud fill_solid(const SolidDef& solid);
 double exact_volume(const SolidDef& solid);
 
+// Checks the solid and gives its axes x', y', z'.
+std::array<std::array<double, 3>, 3> solid_axes(const SolidDef& solid);
+
 // Tangent ogive of shank radius R and caliber-radius-head c: arc of radius rho = 2 c R that meets the shank without a
 // kink; nose length L = sqrt(rho^2 - (rho - R)^2) = R sqrt(4 c - 1).
 double ogive_nose_length(double radius, double caliber_radius_head);

@@ -22,7 +22,7 @@ std::int64_t State::memory_bytes() const {
     total += bytes(body.position) + bytes(body.velocity) + bytes(body.affine) + bytes(body.volume_ratio) +
              bytes(body.energy) + bytes(body.viscous_pressure) +
              bytes(body.plastic_strain) + bytes(body.yield_stress) + bytes(body.temperature) + bytes(body.number) +
-             bytes(body.loads) + bytes(body.force) + bytes(body.groups);
+             bytes(body.loads) + bytes(body.force) + bytes(body.groups) + bytes(body.surface_vertices);
     for (const auto& c : body.stress) total += bytes(c);
     for (const auto& c : body.deformation) total += bytes(c);
   }
@@ -187,6 +187,11 @@ void State::exchange(const Model& model, Archive& a) {
       a.value(at + "rigid/centre", body.rigid.centre);
       a.value(at + "rigid/velocity", body.rigid.velocity);
       a.value(at + "rigid/spin", body.rigid.spin);
+      if (model.bodies[b].surface.given()) {
+        const char* const names[] = {"rigid/turn_x", "rigid/turn_y", "rigid/turn_z"};
+        for (int k = 0; k < 3; ++k) a.value(at + names[k], body.rigid.turn[k]);
+        a.value(at + "rigid/shift", body.rigid.shift);
+      }
     }
 
     // Groups: eleven whole numbers each.
@@ -220,6 +225,9 @@ void State::exchange(const Model& model, Archive& a) {
         body.groups.push_back(g);
       }
     }
+    if (!rigid && model.bodies[b].has_surface())
+      a.sized(at + "surface_vertices", body.surface_vertices,
+              static_cast<std::int64_t>(model.bodies[b].surface.vertices.size()));
     const std::int64_t n = body.padded;
     a.sized(at + "position", body.position, 4 * n);
     a.sized(at + "velocity", body.velocity, 4 * n);

@@ -50,6 +50,9 @@ struct BodyTotals {
 // Of a rigid body: its centre of mass (prescribed motion: its reference point), that point's velocity, angular velocity.
 struct RigidState {
   Vector3 centre{}, velocity{}, spin{};
+  // What lay at X when the body was given lies at shift + turn X (rows of turn).
+  std::array<Vector3, 3> turn{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
+  Vector3 shift{};
 };
 
 // Particle arrays are `padded` long; those that the material does not need are empty.
@@ -75,6 +78,7 @@ struct BodyState {
   bool drifted = false;                              // some particle has left its group's bounds: bin before the next step
   BodyTotals totals;
   RigidState rigid;                                  // rigid bodies only
+  std::vector<double> surface_vertices;              // deformable bodies with a surface: three coordinates each, now
 
   // Calls f(array) for each per-particle array of doubles with one value a particle that is in use.
   template <class F>

@@ -18,6 +18,7 @@
 #include "loads/loads.hpp"
 #include "rigid/rigid.hpp"
 #include "simd/subnormals.hpp"
+#include "surface/meeting.hpp"
 #include "time_step.hpp"
 
 namespace ogive {
@@ -85,6 +86,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   book_gravity(model, state, workspace, dt);
   unfold_motion(state, workspace);
   if (contact) book_kept_start(state, workspace);
+  if (workspace.contact_needs.surface) move_surfaces(model, state, workspace, dt);
   if (xpic) filtered_velocities(workspace);
   book_grid_velocity(model, state, workspace);
   accelerations(state, workspace, dt);
@@ -256,6 +258,8 @@ void filtered_velocities(Workspace& workspace) {
         double* star = workspace.filter[static_cast<std::size_t>(field.slot) * block_nodes + node.node].v;
         for (int c = 0; c < 3; ++c) star[c] -= field.kept[c];
       }
+  for (const ContactPoints::Start& start : workspace.points.start)
+    for (int c = 0; c < 3; ++c) workspace.filter[start.node].v[c] -= start.kept[c];
   unfold_filter(workspace);
 }
 
@@ -443,10 +447,14 @@ void prepare_state(const Model& model, State& state, Workspace& workspace) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b)
     allocate_transfer(model, static_cast<int>(b), state.bodies[b]);
   workspace.contact_needs = contact_needs(model);
+  prepare_surfaces(model, workspace);
   bool fresh = false;
   for (const BodyState& body : state.bodies) fresh = fresh || (body.groups.empty() && body.particles > 0);
   if (fresh) {
     prepare_rigid(model, state);
+    for (std::size_t b = 0; b < state.bodies.size(); ++b)
+      if (!model.bodies[b].rigid() && model.bodies[b].has_surface())
+        state.bodies[b].surface_vertices = model.bodies[b].surface.vertices;
     bin_particles(model, state, workspace, true);
   }
   link_grid(model, state, workspace);

@@ -73,6 +73,7 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_NORMAL_LOGISTIC_REGRESSION = 4
   integer(c_int32_t), parameter :: OGIVE_DETECTION_SHARED_NODE = 0
   integer(c_int32_t), parameter :: OGIVE_DETECTION_GAP = 1
+  integer(c_int32_t), parameter :: OGIVE_DETECTION_SURFACE = 2
   integer(c_int32_t), parameter :: OGIVE_STOP_NONE = 0
   integer(c_int32_t), parameter :: OGIVE_STOP_SETTLED = 1
   integer(c_int32_t), parameter :: OGIVE_STOP_STOPPED = 2
@@ -527,6 +528,25 @@ module ogive_c
       type(c_ptr), value :: xyz
       type(c_ptr), value :: volume
       integer(c_int32_t) :: ogive_solid_particles
+    end function
+    function ogive_body_set_surface(world, body, vertex_count, xyz, triangle_count, corners) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: world
+      type(ogive_body_id), value :: body
+      integer(c_int64_t), value :: vertex_count
+      real(c_double), intent(in) :: xyz(*)
+      integer(c_int64_t), value :: triangle_count
+      integer(c_int32_t), intent(in) :: corners(*)
+      integer(c_int32_t) :: ogive_body_set_surface
+    end function
+    function ogive_body_set_surface_solid(world, body, solid) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: world
+      type(ogive_body_id), value :: body
+      type(ogive_solid_def), intent(in) :: solid
+      integer(c_int32_t) :: ogive_body_set_surface_solid
     end function
     subroutine ogive_contact_def_init(def, size) bind(C)
       import

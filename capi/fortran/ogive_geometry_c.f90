@@ -127,5 +127,16 @@ module ogive_geometry_c
       type(c_ptr), value :: volume
       integer(c_int32_t) :: ogive_mesh_voxelise
     end function
+    function ogive_mesh_surface(mesh, def, vertex_count, triangle_count, xyz, corners) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: mesh
+      type(ogive_voxelise_def), intent(in) :: def
+      integer(c_int64_t), intent(inout) :: vertex_count(*)
+      integer(c_int64_t), intent(inout) :: triangle_count(*)
+      real(c_double), intent(inout) :: xyz(*)
+      integer(c_int32_t), intent(inout) :: corners(*)
+      integer(c_int32_t) :: ogive_mesh_surface
+    end function
   end interface
 end module ogive_geometry_c

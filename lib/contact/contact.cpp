@@ -33,6 +33,7 @@
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
 #include "shape/gimp.hpp"
+#include "surface/meeting.hpp"
 
 namespace ogive {
 namespace {
@@ -142,13 +143,18 @@ class Finder {
         pair.b = b;
         pair.method = &contact_method(rule.method);
         if (pair.method->has_friction) pair.friction = rule.friction;
-        if (wall) {
+        pair.strains = first.rigid < 0 || (!wall && second.rigid < 0);
+        pair.by_surface = by_surface(rule);
+        if (!wall && pair.method->needs_normal &&
+            std::min(first.mass, second.mass) < smallest_mass_share * (first.mass + second.mass))
+          continue;
+        if (pair.by_surface) {
+          if (met_at_points(model_, first.body, second.body) || !surfaces_meet(at, first, second, pair)) continue;
+        } else if (wall) {
           pair.normal = times(-1, wall->normal);
         } else if (pair.method->needs_normal) {
-          if (std::min(first.mass, second.mass) < smallest_mass_share * (first.mass + second.mass)) continue;
           if (!normal_of(block, rule, at, first, second, pair.normal)) continue;
         }
-        pair.strains = first.rigid < 0 || (!wall && second.rigid < 0);
         const ShapeFunction shape = model_.numerics.shape_function;
         const double h = model_.grid.cell_size;
         if (pair.method->needs_normal && rule.detection == Detection::Gap) {
@@ -161,7 +167,7 @@ class Finder {
           if (gap > rule.gap_offset) continue;
           if (!pair.strains) pair.gap = std::max(gap, 0.0) * h;
         }
-        if (pair.method->needs_normal && (first.rigid >= 0 || second.rigid >= 0)) {
+        if (pair.method->needs_normal && !pair.by_surface && (first.rigid >= 0 || second.rigid >= 0)) {
           const double along = wall ? distance_to(*wall, at)
                                     : 0.5 * (surface_distance(shape, second.fill) - surface_distance(shape, first.fill));
           pair.beside = times(along * h, pair.normal);
@@ -181,7 +187,11 @@ class Finder {
       view.cloud = &cloud_;
       for (int axis = 0; axis < 3; ++axis) view.place[axis] = (at.node >> (2 * axis)) & 3;
     }
-    if (!pair_normal(rule.normal, view, normal)) return false;
+    return pair_normal(rule.normal, view, normal) && into_faces(at, normal);
+  }
+
+  // False: no direction is left.
+  bool into_faces(const ContactNode& at, Vector3& normal) const {
     // In a symmetry plane the normal lies in the plane; the sums say so, other rules to round-off.
     bool changed = false;
     for (int axis = 0; axis < 3; ++axis) {
@@ -193,6 +203,17 @@ class Finder {
       changed = true;
     }
     return !changed || make_unit(normal);
+  }
+
+  // Normal, gap and place of a pair of rigid bodies, or of one and a wall, by their surfaces; false: it does not act here.
+  bool surfaces_meet(const ContactNode& at, const ContactField& first, const ContactField& second, ContactPair& pair) const {
+    const double reach = model_.numerics.reach() * model_.grid.cell_size;
+    Meeting meeting;
+    if (!meeting_of(model_, workspace_, first.body, second.body, at.place, reach, meeting)) return false;
+    pair.normal = meeting.normal;
+    pair.gap = std::max(meeting.gap, 0.0);
+    pair.beside = minus(meeting.place, at.place);
+    return into_faces(at, pair.normal);
   }
 
   const Model& model_;
@@ -242,7 +263,8 @@ void decide(BlockContacts& contacts, ContactNode& node, const std::vector<RigidM
     const auto rule = at_end ? pair.method->at_end : pair.method->at_start;
     if (!rule || !acts) continue;
     PairView view{pair.normal, {a.outward, b.outward}, pair.mapped, pair.adjusted, pair.found, pair.pressed, 0};
-    if (b.body < 0) view.own_normal[1] = times(-1, pair.normal);
+    if (pair.by_surface) view.own_normal[0] = pair.normal;
+    if (b.body < 0 || pair.by_surface) view.own_normal[1] = times(-1, pair.normal);
     if (!at_end) view.mapped = view.adjusted = pair.found;
     if (pair.method->needs_stress && a.stress_volume + b.stress_volume > 0) {
       double sum = 0;
@@ -521,8 +543,8 @@ void book_impulses(State& state, Workspace& workspace, double dt) {
 
 // Where bodies share one velocity field there are only walls, and nothing says which body pushes on them.
 void book_contact_forces(const Model& model, State& state, const Workspace& workspace) {
-  if (!model.own_fields && model.bodies.size() > 1) return;
   for (BodyState& body : state.bodies) body.totals.contact_force = {};
+  if (!model.own_fields && model.bodies.size() > 1) return;
   for (const MixedBlock& block : workspace.mixed)
     for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s)
       add(state.bodies[workspace.slots[s].field].totals.contact_force, workspace.slot_contact_force[s]);
@@ -541,19 +563,11 @@ void book_pairs(State& state, const Workspace& workspace, double dt, bool at_end
         Vector3 impulse = impulse_on_a(at_node);
         if (b < 0 || impulse == Vector3{}) continue;  // a wall, or nothing passed
         if (!at_end && !at_node.method->start_reaches_particles) impulse = {};
-        auto pair = std::lower_bound(state.pairs.begin(), state.pairs.end(), std::pair(a, b),
-                                     [](const PairTotals& left, const std::pair<std::int32_t, std::int32_t>& right) {
-                                       return std::pair(left.a, left.b) < right;
-                                     });
-        if (pair == state.pairs.end() || pair->a != a || pair->b != b) {
-          pair = state.pairs.insert(pair, PairTotals{});
-          pair->a = a;
-          pair->b = b;
-        }
-        add(pair->force, times(1 / dt, impulse));
-        add(pair->impulse, impulse);
-        pair->friction_dissipation += at_node.friction_dissipation;
-        pair->contact_work += at_node.contact_work;
+        PairTotals& pair = pair_totals(state, a, b);
+        add(pair.force, times(1 / dt, impulse));
+        add(pair.impulse, impulse);
+        pair.friction_dissipation += at_node.friction_dissipation;
+        pair.contact_work += at_node.contact_work;
       }
   }
 }
@@ -588,6 +602,19 @@ double surface_distance(ShapeFunction shape, double fraction) {
   return s;
 }
 
+PairTotals& pair_totals(State& state, std::int32_t a, std::int32_t b) {
+  auto pair = std::lower_bound(state.pairs.begin(), state.pairs.end(), std::pair(a, b),
+                               [](const PairTotals& left, const std::pair<std::int32_t, std::int32_t>& right) {
+                                 return std::pair(left.a, left.b) < right;
+                               });
+  if (pair == state.pairs.end() || pair->a != a || pair->b != b) {
+    pair = state.pairs.insert(pair, PairTotals{});
+    pair->a = a;
+    pair->b = b;
+  }
+  return *pair;
+}
+
 ContactNeeds contact_needs(const Model& model) {
   ContactNeeds needs;
   const auto rule = [&](const ContactRule& r, bool wall) {
@@ -597,6 +624,7 @@ ContactNeeds contact_needs(const Model& model) {
     needs.start_kept = needs.start_kept || (method.at_start && !method.start_reaches_particles);
     needs.stress = needs.stress || method.needs_stress;
     needs.memory = needs.memory || method.remembers;
+    needs.surface = needs.surface || by_surface(r);
     if (wall || !method.needs_normal) return;
     needs.occupied = needs.occupied || normal_rule(r.normal).needs_occupied;
     needs.cloud = needs.cloud || normal_rule(r.normal).needs_cloud;
@@ -612,6 +640,7 @@ ContactNeeds contact_needs(const Model& model) {
 void find_contacts(const Model& model, const State& state, Workspace& workspace) {
   const std::int64_t blocks = static_cast<std::int64_t>(workspace.mixed.size());
   if (workspace.block_contacts.size() < workspace.mixed.size()) workspace.block_contacts.resize(workspace.mixed.size());
+  if (workspace.contact_needs.surface) place_surfaces(model, state, workspace);
   std::exception_ptr failure;  // want of memory must not leave the parallel region
 #pragma omp parallel num_threads(workspace.threads) if (blocks > 1)
   {
@@ -625,6 +654,7 @@ void find_contacts(const Model& model, const State& state, Workspace& workspace)
       }
   }
   if (failure) std::rethrow_exception(failure);
+  if (workspace.contact_needs.surface) find_points(model, state, workspace);
   for (const MixedBlock& block : workspace.mixed)
     for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) workspace.slot_contact_force[s] = {};
 }
@@ -683,6 +713,7 @@ void start_contact(const Model& model, State& state, Workspace& workspace, doubl
       }
     }
   });
+  if (workspace.contact_needs.surface) start_points(model, state, workspace, rigid, dt, use);
   if (use == StartUse::Strain) return;
   const double grid_part =
       model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction();
@@ -719,6 +750,7 @@ void return_start(Workspace& workspace) {
         for (int c = 0; c < 3; ++c) v[c] += field.returned[c];
       }
   });
+  return_start_points(workspace);
 }
 
 void end_contact(const Model& model, State& state, Workspace& workspace, double dt) {
@@ -746,8 +778,9 @@ void end_contact(const Model& model, State& state, Workspace& workspace, double 
   book_contact_forces(model, state, workspace);
   book_pairs(state, workspace, dt, true);
   book_energies(state, workspace);
+  if (workspace.contact_needs.memory) state.contact_memory.clear();
+  if (workspace.contact_needs.surface) end_points(state, workspace, dt);
   if (workspace.contact_needs.memory) {
-    state.contact_memory.clear();
     for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
       for (const ContactNode& node : workspace.block_contacts[i].nodes)
         for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
@@ -772,6 +805,10 @@ void book_kept_start(State& state, const Workspace& workspace) {
         const NodeRecord& record = workspace.nodes[static_cast<std::size_t>(field.slot) * block_nodes + node.node];
         for (int c = 0; c < 3; ++c) given += record.v[3] * field.kept[c] * (record.f[c] - record.v[c]);
       }
+  for (const ContactPoints::Start& start : workspace.points.start) {
+    const NodeRecord& record = workspace.nodes[start.node];
+    for (int c = 0; c < 3; ++c) given += record.v[3] * start.kept[c] * (record.f[c] - record.v[c]);
+  }
   state.ledger.transfer_dissipation += given;
 }
 

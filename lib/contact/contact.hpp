@@ -14,11 +14,6 @@ ContactNeeds contact_needs(const Model& model);
 void find_contacts(const Model& model, const State& state, Workspace& workspace);
 
 // The first phase, on the regular grid: node records hold {mapped velocity, mass | -}, and the velocity is changed.
-enum class StartUse {
-  MotionAndStrain,  // stress first
-  Motion,           // stress last: only what the particles never see, which belongs to the acceleration
-  Strain            // stress last, the velocities that give the strain: nothing is booked, rigid bodies stay as they are
-};
 void start_contact(const Model& model, State& state, Workspace& workspace, double dt, StartUse use);
 
 // Puts back, once the trial velocities stand, what the particles' increments (34) are to contain.
@@ -27,6 +22,9 @@ void return_start(Workspace& workspace);
 // The second phase, on the deformed grid: impulses that correct the trial velocities, Eqs. (12)-(22) and (14).
 // Node records hold {velocity at the beginning of the step, mass | trial velocity}; the trial velocity is replaced.
 void end_contact(const Model& model, State& state, Workspace& workspace, double dt);
+
+// The sums of a pair a < b, which are begun where there are none.
+PairTotals& pair_totals(State& state, std::int32_t a, std::int32_t b);
 
 // For the ledger, before node records become {velocity, 0 | acceleration, 0}: the grid's increments act on the particles'
 // own velocities, which are the mapped ones, not those that the first phase left.

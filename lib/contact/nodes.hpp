@@ -12,6 +12,13 @@ namespace ogive {
 
 struct ContactMethodDef;
 
+// The first phase of contact, at the beginning of the step.
+enum class StartUse {
+  MotionAndStrain,  // stress first
+  Motion,           // stress last: only what the particles never see, which belongs to the acceleration
+  Strain            // stress last, the velocities that give the strain: nothing is booked, rigid bodies stay as they are
+};
+
 // What holds a pair together at a node during one phase.
 enum class Hold {
   Nothing,
@@ -53,6 +60,7 @@ struct ContactPair {
   Vector3 normal{};             // unit, out of a; zero where the method asks for none
   Vector3 beside{};             // from the node to the surface where the bodies meet; only where one of them is rigid
   bool strains = true;          // one of the bodies deforms
+  bool by_surface = false;      // its normal is that of a surface
   double gap = 0;               // length > 0 that two bodies that do not deform may still approach
   double friction = 0;
   bool pressed = false;         // its normal impulse pushed in the last step; after the second phase, in this one

@@ -24,6 +24,15 @@ Vector3 transposed_product(const Matrix3& m, const Vector3& v) {
   return r;
 }
 
+Vector3 column(const Matrix3& m, int j) { return {m[0][j], m[1][j], m[2][j]}; }
+
+Matrix3 product(const Matrix3& a, const Matrix3& b) {
+  Matrix3 r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) r[i][j] = dot(a[i], column(b, j));
+  return r;
+}
+
 // Rotation by the vector `turn` (Rodrigues).
 Matrix3 rotation(const Vector3& turn) {
   const double angle = length(turn);
@@ -161,7 +170,9 @@ void prepare_rigid(const Model& model, State& state) {
     if (!rules.rigid()) continue;
     if (rules.prescribed()) {
       const MotionKnot start = motion_at(rules, state.time);
-      body.rigid = {rules.reference, start.velocity, start.angular_velocity};
+      body.rigid.centre = rules.reference;
+      body.rigid.velocity = start.velocity;
+      body.rigid.spin = start.angular_velocity;
       body.totals.initial_velocity = {};
     }
     Vector3 momentum{};
@@ -255,12 +266,14 @@ void finish_rigid_step(const Model& model, State& state, Workspace& workspace, d
     }
 
     // What the grid saw turns and moves the body; what it keeps of it is without `kept`.
-    RigidState next;
+    RigidState next = body.rigid;
     Matrix3 turn;
     if (motion.prescribed) {
       turn = rotation(times(dt, motion.spin));
       const MotionKnot end = motion_at(rules, state.time + dt);
-      next = {plus(motion.centre, times(dt, motion.velocity)), end.velocity, end.angular_velocity};
+      next.centre = plus(motion.centre, times(dt, motion.velocity));
+      next.velocity = end.velocity;
+      next.spin = end.angular_velocity;
     } else {
       Vector3 kept_impulse = motion.kept_impulse, kept_moment = motion.kept_moment;
       for (int axis = 0; axis < 3; ++axis)
@@ -278,6 +291,17 @@ void finish_rigid_step(const Model& model, State& state, Workspace& workspace, d
       next.centre = plus(motion.centre, times(dt, motion.velocity));
       next.velocity = minus(motion.velocity, times(motion.images / motion.mass, kept_impulse));
       next.spin = turned_spin(turn, minus(angular_momentum, times(motion.images, kept_moment)));
+    }
+
+    if (!workspace.surfaces.empty()) {
+      // Orthogonal for ever: turn (3 - turn^T turn) / 2 takes the round-off out.
+      const Matrix3 turned = product(turn, body.rigid.turn);
+      Matrix3 excess{};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          excess[i][j] = (i == j ? 1.5 : 0) - 0.5 * dot(column(turned, i), column(turned, j));
+      next.turn = product(turned, excess);
+      next.shift = plus(next.centre, product(turn, minus(body.rigid.shift, motion.centre)));
     }
 
     // Groups of the body, by their places on the grid for the bounds.

@@ -37,6 +37,8 @@ static void null_worlds(void) {
   CHECK(ogive_world_set_contact(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_contact_set_pair(NULL, none, none, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_wall_add(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_body_set_surface(NULL, none, 4, value, 4, NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_body_set_surface_solid(NULL, none, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_body_set_motion(NULL, none, 1, &number, NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_contact_method_name(-1) == NULL && ogive_contact_method_name(ogive_contact_method_count()) == NULL);
   CHECK(ogive_contact_normal_name(-1) == NULL && ogive_contact_normal_name(ogive_contact_normal_count()) == NULL);
@@ -240,7 +242,20 @@ static void definitions(void) {
   WITH(wall, normal[2], 0, ogive_wall_add(world, &wall), "normal");
   WITH(wall, point[0], NAN, ogive_wall_add(world, &wall), "point");
   WITH(wall, friction, -1, ogive_wall_add(world, &wall), "friction");
-  WITH(wall, detection, 2, ogive_wall_add(world, &wall), "detection");
+  WITH(wall, detection, 3, ogive_wall_add(world, &wall), "detection");
+  static const double tetrahedron[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  static const int32_t faces[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, open[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 0, 2, 1};
+  ogive_solid_def no_solid;
+  ogive_solid_def_init(&no_solid, sizeof no_solid);
+  CHECK_REFUSED(world, ogive_body_set_surface(world, stale, 4, tetrahedron, 4, faces), "body");
+  CHECK_REFUSED(world, ogive_body_set_surface(world, (ogive_body_id){0}, 3, tetrahedron, 4, faces), "vertex_count");
+  CHECK_REFUSED(world, ogive_body_set_surface(world, (ogive_body_id){0}, 4, tetrahedron, 3, faces), "triangle_count");
+  CHECK_REFUSED(world, ogive_body_set_surface(world, (ogive_body_id){0}, 4, NULL, 4, faces), "xyz");
+  CHECK_REFUSED(world, ogive_body_set_surface(world, (ogive_body_id){0}, 4, tetrahedron, 4, NULL), "corners");
+  CHECK_REFUSED(world, ogive_body_set_surface(world, (ogive_body_id){0}, 4, tetrahedron, 4, open), "surface");
+  CHECK_REFUSED(world, ogive_body_set_surface_solid(world, stale, &no_solid), "body");
+  CHECK_REFUSED(world, ogive_body_set_surface_solid(world, (ogive_body_id){0}, NULL), "solid");
+  CHECK_REFUSED(world, ogive_body_set_surface_solid(world, (ogive_body_id){0}, &no_solid), "size");
   CHECK_REFUSED(world, ogive_body_set_motion(world, stale, 1, motion_time, NULL, NULL), "body");
   CHECK_REFUSED(world, ogive_body_set_motion(world, (ogive_body_id){0}, 1, motion_time, NULL, NULL), "PRESCRIBED");
 
@@ -370,6 +385,8 @@ static void once_it_is_prepared(const char* directory) {
   CHECK_ORDER(world, ogive_world_set_contact(world, &contact), "frozen");
   CHECK_ORDER(world, ogive_contact_set_pair(world, small.left, small.right, &contact), "frozen");
   CHECK_ORDER(world, ogive_world_set_stop(world, &stop), "frozen");
+  CHECK_ORDER(world, ogive_body_set_surface(world, small.left, 4, values, 4, NULL), "frozen");
+  CHECK_ORDER(world, ogive_body_set_surface_solid(world, small.left, &box), "frozen");
   CHECK_ORDER(world, ogive_world_load(world, &reader), "fresh");
 
   CHECK_REFUSED(world, ogive_world_stable_time_step(world, NULL), "dt");
@@ -557,6 +574,11 @@ static void meshes(void) {
   MESH_REFUSED(ogive_mesh_voxelise(mesh, NULL, &count, NULL, NULL), "def");
   MESH_REFUSED(ogive_mesh_voxelise(mesh, &fill, NULL, NULL, NULL), "count");
   MESH_REFUSED(ogive_mesh_voxelise(mesh, &fill, &count, &fill.spacing[0], NULL), "xyz and volume");
+  CHECK(ogive_mesh_surface(NULL, &fill, &count, &count, NULL, NULL) == OGIVE_ERROR_ARGUMENT);
+  MESH_REFUSED(ogive_mesh_surface(mesh, NULL, &count, &count, NULL, NULL), "def");
+  MESH_REFUSED(ogive_mesh_surface(mesh, &fill, NULL, &count, NULL, NULL), "vertex_count");
+  MESH_REFUSED(ogive_mesh_surface(mesh, &fill, &count, NULL, NULL, NULL), "triangle_count");
+  MESH_REFUSED(ogive_mesh_surface(mesh, &fill, &count, &count, &fill.spacing[0], NULL), "xyz and corners");
   fill.spacing[1] = -1;
   MESH_REFUSED(ogive_mesh_voxelise(mesh, &fill, &count, NULL, NULL), "spacing");
   ogive_mesh_destroy(mesh);

@@ -374,9 +374,77 @@ static void meshes_become_particles(const char* directory, const char* data) {
   double sum = 0;
   for (int64_t i = 0; i < count; ++i) sum += volume[i];
   CHECK(fabs(sum - 1.0 / 6) < 1e-12);
+  int64_t vertices = 0, triangles = 0;
+  double placed[12];
+  int32_t numbers[12];
+  set3(fill.position, 5, 0, 0);
+  CHECK(ogive_mesh_surface(mesh, &fill, &vertices, &triangles, NULL, NULL) == OGIVE_OK);
+  CHECK(vertices == 4 && triangles == 4);
+  CHECK(ogive_mesh_surface(mesh, &fill, &vertices, &triangles, placed, numbers) == OGIVE_OK);
+  for (int i = 0; i < 12; ++i) {
+    CHECK(numbers[i] >= 0 && numbers[i] < 4);
+    CHECK(placed[i] == corners[i] + (i % 3 == 0 ? 5 : 0));
+  }
   free(xyz);
   free(volume);
   ogive_mesh_destroy(mesh);
+}
+
+/* A rigid box and one given by its particles and triangles meet by their true surfaces: momentum passes, nothing is lost. */
+static void bodies_meet_by_their_surfaces(void) {
+  static const double xyz[24] = {0.1, -1, -1, 2.1, -1, -1, 0.1, 1, -1, 2.1, 1, -1, 0.1, -1, 1, 2.1, -1, 1, 0.1, 1, 1, 2.1, 1, 1};
+  static const int32_t corners[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                      2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  ogive_grid_def grid = small_grid();
+  ogive_material_def copper = small_material();
+  ogive_material_id material;
+  ogive_solid_def box = small_box(-1);
+  ogive_body_def body;
+  ogive_body_id left, right, third;
+  ogive_contact_def contact;
+  ogive_body_result result;
+  ogive_world* world = NULL;
+  double momentum;
+  CHECK(ogive_world_create(&world) == OGIVE_OK);
+  CHECK_OK(world, ogive_world_set_grid(world, &grid));
+  CHECK_OK(world, ogive_material_add(world, "copper", &copper, &material));
+  ogive_contact_def_init(&contact, sizeof contact);
+  contact.detection = OGIVE_DETECTION_SURFACE;
+  CHECK_OK(world, ogive_world_set_contact(world, &contact));
+  ogive_body_def_init(&body, sizeof body);
+  body.material = material;
+  box = small_box(1.1);
+  CHECK_OK(world, ogive_body_add_solid(world, "right", &body, &box, &right));
+  CHECK_OK(world, ogive_body_set_surface(world, right, 8, xyz, 12, corners));
+  body.formulation = OGIVE_FORMULATION_RIGID_FREE;
+  set3(body.velocity, 100, 0, 0);
+  box = small_box(-1);
+  int64_t count = 0;
+  CHECK_OK(world, ogive_solid_particles(world, &box, &count, NULL, NULL));
+  double* places = malloc(3 * (size_t)count * sizeof *places);
+  double* volume = malloc((size_t)count * sizeof *volume);
+  CHECK_OK(world, ogive_solid_particles(world, &box, &count, places, volume));
+  CHECK_OK(world, ogive_body_add_particles(world, "left", &body, count, places, volume, &left));
+  CHECK_OK(world, ogive_body_set_surface_solid(world, left, &box));
+  set3(body.velocity, 0, 0, 0);
+  box = small_box(3.2);
+  CHECK_OK(world, ogive_body_add_solid(world, "third", &body, &box, &third));
+  CHECK_OK(world, ogive_world_prepare(world));
+  result.struct_size = sizeof result;
+  CHECK_OK(world, ogive_body_result_get(world, left, &result));
+  momentum = result.momentum[0];
+  CHECK_OK(world, ogive_world_advance(world, 2e-3, 0, NULL, NULL));
+  double sum = 0;
+  for (int32_t b = 0; b < 3; ++b) {
+    CHECK_OK(world, ogive_body_result_get(world, (ogive_body_id){b}, &result));
+    sum += result.momentum[0];
+    if (b == left.index) CHECK(result.velocity[0] < 90);
+    if (b == right.index) CHECK(result.velocity[0] > 10);
+  }
+  CHECK(fabs(sum - momentum) < 1e-12 * momentum);
+  free(places);
+  free(volume);
+  ogive_world_destroy(world);
 }
 
 /* A rigid block that a host drives pushes a free one, which its own forces push back. */
@@ -455,6 +523,7 @@ int main(int argc, char** argv) {
   results_agree_with_each_other(&small);
   fields_are_read_set_and_viewed(&small);
   a_deformation_gradient_is_kept_and_set();
+  bodies_meet_by_their_surfaces();
   rigid_bodies_move_as_the_host_says();
   saves_and_files(&small, argv[1], argv[2]);
   CHECK(logged[OGIVE_LOG_ERROR] == 0);

@@ -147,9 +147,10 @@ class Scene {
 
   // A plane through `point`; bodies lie where `normal` points to.
   Scene& wall(Vec3 point, Vec3 normal, double friction = 0, std::optional<double> gap_offset = {},
-              std::int32_t method = OGIVE_CONTACT_HUANG_SECOND) {
+              std::int32_t method = OGIVE_CONTACT_HUANG_SECOND, std::int32_t detection = OGIVE_DETECTION_GAP) {
     ogive_wall_def def;
     ogive_wall_def_init(&def, sizeof def);
+    def.detection = detection;
     for (int c = 0; c < 3; ++c) {
       def.point[c] = point[c];
       def.normal[c] = normal[c];

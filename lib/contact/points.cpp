@@ -1,0 +1,524 @@
+// Contact at points of a surface.
+//
+// A particle p with distance d_p from the surface (nearest point q_p, normal n_p out of the owner) and half size
+// s_p = (V_0p min(J_p, 1))^(1/3) / 2 has the gap d_p - s_p. With the stencil w_j = N_j(x_p) the two bodies are compared by
+//   v = sum_j w_j v_j - v_owner(q_p),  approach v . n_p < 0,
+// and an impulse J on the felt body changes v_j by w_j J / m_j and the owner by -J at q_p. Since w_j m_p is part of m_j no
+// node is pushed faster than the particle itself would be, however little mass it has.
+//
+// Points share nodes and bodies. Their impulses minimise the kinetic energy of what is left of the approach, within what
+// their methods allow: a quadratic program, solved by projected gradients, all points at once, each with a mobility that
+// makes a step safe, with Nesterov's acceleration, which begins anew where it would lead uphill (O'Donoghue, Candes 2015). No
+// order of points is preferred, so that mirrored models have mirrored impulses.
+//
+// The stencil of an owner that deforms, at q_p, is stencil.hpp's for surfaces, which leaves out nodes with next to no mass.
+#include "contact/points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+#include "contact/contact.hpp"
+#include "contact/method.hpp"
+#include "contact/stencil.hpp"
+#include "grid.hpp"
+#include "simd/subnormals.hpp"
+#include "surface/meeting.hpp"
+
+namespace ogive {
+namespace {
+
+constexpr double look_ahead = 0.1;  // cells: gaps up to here are watched; a particle comes less far in a step
+constexpr double deepest = 0.5;     // cells: deeper inside than this and half its size a particle is not found
+constexpr int most_passes = 100;
+constexpr double pass_tolerance = 1e-5;  // of the relative velocity
+
+// ------------------------------------------------------------------------------------------------------------- finding
+
+// Points of one group's particles, without stencils.
+class Feeler {
+ public:
+  Feeler(const Model& model, const State& state, const Workspace& workspace)
+      : model_(model), state_(state), workspace_(workspace), ahead_(look_ahead * model.grid.cell_size) {}
+
+  void feel(const GroupLinks& link, const KernelGroup& group, std::vector<ContactPoint>& points) const {
+    points.clear();
+    for (std::int32_t w = 0; w < static_cast<std::int32_t>(model_.walls.size()); ++w)
+      if (by_surface(model_.walls[w].rule)) feel(link, group, -1 - w, points);
+    for (std::int32_t b = 0; b < static_cast<std::int32_t>(workspace_.surfaces.size()); ++b)
+      if (workspace_.surfaces[b].used && b != link.body) feel(link, group, b, points);
+  }
+
+ private:
+  void feel(const GroupLinks& link, const KernelGroup& group, std::int32_t owner, std::vector<ContactPoint>& points) const {
+    // The largest half size is that of a whole cell.
+    const double h = model_.grid.cell_size, reach = 0.5 * h + ahead_;
+    if (owner >= 0) {
+      const PlacedSurface& placed = workspace_.surfaces[owner];
+      for (int c = 0; c < 3; ++c)
+        if (group.bound_high[c] < placed.lower[c] - reach || group.bound_low[c] > placed.upper[c] + reach) return;
+    } else {
+      const Wall& wall = model_.walls[-1 - owner];
+      double lowest = 0;
+      for (int c = 0; c < 3; ++c)
+        lowest += wall.normal[c] * ((wall.normal[c] > 0 ? group.bound_low[c] : group.bound_high[c]) - wall.point[c]);
+      if (lowest > reach) return;
+    }
+    if (!met_at_points(model_, link.body, owner) ||
+        (owner >= 0 && surface_owner(model_, link.body, owner) != owner))
+      return;
+    std::int32_t hint = -1;
+    if (owner >= 0) {
+      // A skew body's box holds many groups that are nowhere near it.
+      Vector3 middle, across;
+      for (int c = 0; c < 3; ++c) {
+        middle[c] = 0.5 * (group.bound_low[c] + group.bound_high[c]);
+        across[c] = group.bound_high[c] - group.bound_low[c];
+      }
+      SurfacePoint found;
+      if (!nearest_of_owner(model_, workspace_, owner, middle, 0.5 * length(across) + reach, found, &hint)) return;
+    }
+    const ContactRule& rule = owner < 0 ? model_.walls[-1 - owner].rule : model_.rule_of(link.body, owner);
+    const BodyState& body = state_.bodies[link.body];
+    const double inverse_density = 1.0 / model_.material_of(link.body).density;
+    for (std::int64_t p = group.begin; p < group.begin + body.groups[link.group].count; ++p) {
+      const double* r = &body.position[4 * p];
+      const Vector3 x = {r[0], r[1], r[2]};
+      double volume = r[3] * inverse_density * std::min(body.volume_ratio[p], 1.0);
+      Vector3 on_face{};
+      for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side) {
+          if (model_.grid.face[2 * axis + side] == Face::Free) continue;
+          const double plane = side == 0 ? model_.grid.domain_min[axis] : model_.grid.domain_max[axis];
+          if (std::abs(plane - x[axis]) > 1e-9 * h) continue;
+          volume *= 2;  // half of a particle that the face cuts
+          on_face[axis] = 1;
+        }
+      const double half = 0.5 * std::cbrt(volume);
+      SurfacePoint found;
+      if (!nearest_of_owner(model_, workspace_, owner, x, half + deepest * h, found, &hint)) continue;
+      const double gap = found.distance - half;
+      if (gap > ahead_) continue;
+      ContactPoint point;
+      point.method = &contact_method(rule.method);
+      if (point.method->has_friction) point.friction = rule.friction;
+      point.gap = std::max(gap, 0.0);
+      point.normal = times(-1, found.normal);
+      for (int axis = 0; axis < 3; ++axis)
+        if (on_face[axis] != 0) point.normal[axis] = 0;
+      if (!make_unit(point.normal)) continue;
+      point.particle = p;
+      for (int axis = 0; axis < 3; ++axis)
+        if (on_face[axis] != 0) point.part *= 0.5;
+      point.a.body = link.body;
+      point.a.at = x;
+      point.b.body = owner;
+      point.b.at = minus(x, times(found.distance, found.normal));
+      points.push_back(point);
+    }
+  }
+
+  const Model& model_;
+  const State& state_;
+  const Workspace& workspace_;
+  const double ahead_;
+};
+
+// ------------------------------------------------------------------------------------------------------------- solving
+
+// One phase: on the mapped velocities, or on the trial velocities.
+class Phase {
+ public:
+  Phase(const State& state, Workspace& workspace, std::vector<RigidMotion>& rigid, bool at_end, StartUse use, double dt)
+      : state_(state), workspace_(workspace), rigid_(rigid), at_end_(at_end), use_(use), dt_(dt) {}
+
+  void solve() {
+    std::vector<ContactPoint*> acting;
+    double scale = 0;
+    for (ContactPoint& point : workspace_.points.points) {
+      if (!decide(point)) continue;
+      acting.push_back(&point);
+      scale = std::max(scale, length(point.found));
+    }
+    if (acting.empty()) return;
+    find_mobilities(acting);
+    if (!at_end_)
+      for (ContactPoint* point : acting) remember(point->a), remember(point->b);
+    double pace = 1;  // of the acceleration
+    for (int pass = 0; pass < most_passes; ++pass) {
+      double worst = 0, uphill = 0;
+      for (ContactPoint* point : acting) {
+        const Vector3 slope = minus(relative(*point), times(point->constraint.target, point->normal));
+        const Vector3 next = allowed(*point, minus(point->ahead, times(1 / point->mobility, slope)));
+        point->change = minus(next, point->impulse);
+        uphill += point->mobility * dot(minus(point->ahead, next), point->change);
+        worst = std::max(worst, point->mobility * length(point->change));
+        point->impulse = next;
+      }
+      const bool done = worst <= pass_tolerance * scale || pass + 1 == most_passes;
+      const double next_pace = uphill > 0 ? 1 : 0.5 * (1 + std::sqrt(1 + 4 * pace * pace));
+      const double part = done || uphill > 0 ? 0 : (pace - 1) / next_pace;
+      pace = next_pace;
+      for (ContactPoint* point : acting) {
+        const Vector3 ahead = plus(point->impulse, times(part, point->change));
+        const Vector3 more = minus(ahead, point->ahead);
+        point->ahead = ahead;
+        if (more == Vector3{}) continue;
+        give(point->a, more);
+        give(point->b, times(-1, more));
+      }
+      if (done) break;
+    }
+  }
+
+  double* velocity_record(std::int32_t node) const {
+    NodeRecord& record = workspace_.nodes[node];
+    return at_end_ ? record.f : record.v;
+  }
+
+  Vector3 velocity(const PointSide& side) const {
+    if (side.rigid >= 0) return rigid_[side.rigid].velocity_at(side.at);
+    Vector3 v{};
+    for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
+      const PointNode& entry = workspace_.points.stencils[e];
+      const double* node = velocity_record(entry.node);
+      for (int c = 0; c < 3; ++c) v[c] += entry.weight[c] * node[c];
+    }
+    return v;
+  }
+
+  Vector3 relative(const ContactPoint& point) const { return minus(velocity(point.a), velocity(point.b)); }
+
+  // The mean in the step of what the second phase's impulses work on, as contact.cpp's measure_work: of the velocities at the
+  // beginning and the end, of rigid bodies before and after contact.
+  Vector3 mean(const ContactPoint& point) const {
+    const auto of = [&](const PointSide& side) {
+      Vector3 v{};
+      for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
+        const PointNode& entry = workspace_.points.stencils[e];
+        const NodeRecord& record = workspace_.nodes[entry.node];
+        for (int c = 0; c < 3; ++c) v[c] += 0.5 * entry.weight[c] * (record.v[c] + record.f[c]);
+      }
+      if (side.rigid < 0) return v;
+      return times(0.5, plus(side.before, velocity(side)));
+    };
+    return plus(minus(of(point.a), of(point.b)), point.kept);
+  }
+
+ private:
+  void give(const PointSide& side, Vector3 impulse) {
+    if (side.fixed) return;
+    if (side.rigid >= 0) {
+      RigidMotion& body = rigid_[side.rigid];
+      Vector3 moment = cross(minus(side.at, body.centre), impulse);
+      push(body, impulse, moment);
+      return;
+    }
+    for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
+      const PointNode& entry = workspace_.points.stencils[e];
+      double* node = velocity_record(entry.node);
+      const double inverse = 1 / workspace_.nodes[entry.node].v[3];
+      for (int c = 0; c < 3; ++c) node[c] += entry.weight[c] * impulse[c] * inverse;
+    }
+  }
+
+  // mobility of a point: the velocity that a unit impulse gives there, were the mass of each node and rigid body shared
+  // between the points in proportion to their part in it. With these no set of impulses, taken at once, gains energy.
+  void find_mobilities(const std::vector<ContactPoint*>& acting) {
+    ContactPoints& points = workspace_.points;
+    std::vector<double> rigid_share(rigid_.size(), 0.0);
+    const auto share_of = [](const PointNode& entry) {
+      return std::max({std::abs(entry.weight[0]), std::abs(entry.weight[1]), std::abs(entry.weight[2])});
+    };
+    for (const ContactPoint* point : acting)
+      for (const PointSide* side : {&point->a, &point->b}) {
+        if (side->rigid >= 0) rigid_share[side->rigid] += point->part;
+        for (std::int32_t e = side->first; e < side->first + side->count; ++e)
+          points.share[points.stencils[e].node] += point->part * share_of(points.stencils[e]);
+      }
+    for (ContactPoint* point : acting) {
+      point->mobility = 0;
+      for (const PointSide* side : {&point->a, &point->b}) {
+        if (side->fixed) continue;
+        if (side->rigid >= 0) {
+          const RigidMotion& body = rigid_[side->rigid];
+          const Vector3 r = minus(side->at, body.centre);
+          point->mobility += body.images * (1 / body.mass + dot(r, r) * body.largest_inverse_inertia) *
+                             rigid_share[side->rigid] / point->part;
+          continue;
+        }
+        for (std::int32_t e = side->first; e < side->first + side->count; ++e) {
+          const std::int32_t node = points.stencils[e].node;
+          point->mobility += share_of(points.stencils[e]) * points.share[node] / (point->part * workspace_.nodes[node].v[3]);
+        }
+      }
+    }
+    for (const ContactPoint* point : acting)
+      for (const PointSide* side : {&point->a, &point->b})
+        for (std::int32_t e = side->first; e < side->first + side->count; ++e) points.share[points.stencils[e].node] = 0;
+  }
+
+  // The nearest impulse on a that the point's constraint allows: pushes only, within the friction cone.
+  static Vector3 allowed(const ContactPoint& point, const Vector3& impulse) {
+    const Constraint& constraint = point.constraint;
+    double push = -dot(impulse, point.normal);
+    Vector3 along = plus(impulse, times(push, point.normal));
+    if (constraint.hold == Hold::Contact) push = std::max(push, 0.0);
+    if (constraint.hold != Hold::Stick) {
+      const double most = constraint.friction ? point.friction * (std::max(push, 0.0) + point.start_push) : 0;
+      const double size = length(along);
+      along = size > most ? times(size > 0 ? most / size : 0, along) : along;
+    }
+    return minus(along, times(push, point.normal));
+  }
+
+  bool decide(ContactPoint& point) {
+    point.found = relative(point);
+    for (PointSide* side : {&point.a, &point.b})
+      if (side->rigid >= 0) side->before = velocity(*side);
+    point.impulse = point.ahead = {};
+    point.constraint = {};
+    const bool strains = point.a.rigid < 0 || (point.b.rigid < 0 && point.b.count > 0);
+    const bool acts = at_end_ || (strains && (use_ != StartUse::Motion || !point.method->start_reaches_particles));
+    const auto rule = at_end_ ? point.method->at_end : point.method->at_start;
+    if (!rule || !acts) return false;
+    PairView view{point.normal,   {point.normal, times(-1, point.normal)}, point.mapped, point.adjusted, point.found,
+                  point.pressed, 0};
+    if (!at_end_) view.mapped = view.adjusted = point.found;
+    if (point.method->needs_stress && point.a.rigid < 0) {
+      const BodyState& body = state_.bodies[point.a.body];
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        view.normal_stress += body.stress[i][point.particle] * point.normal[i] * point.normal[i] +
+                              2 * body.stress[3 + i][point.particle] * point.normal[j] * point.normal[k];
+      }
+    }
+    point.constraint = rule(view);
+    if (point.constraint.hold == Hold::Nothing) return false;
+    // What is still apart may meet within the step; what holds a pair both ways waits for that.
+    if (point.constraint.hold == Hold::Contact)
+      point.constraint.target += point.gap / dt_;
+    else if (point.gap > 0 && dot(point.found, point.normal) * dt_ < point.gap)
+      point.constraint.hold = Hold::Nothing;
+    return point.constraint.hold != Hold::Nothing;
+  }
+
+  // The velocities of a side's nodes before the phase.
+  void remember(const PointSide& side) {
+    ContactPoints& points = workspace_.points;
+    for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
+      const std::int32_t node = points.stencils[e].node;
+      if (points.seen[node]) continue;
+      const double* v = velocity_record(node);
+      points.changes.push_back({node, {v[0], v[1], v[2]}});
+      points.seen[node] = static_cast<std::int32_t>(points.changes.size());
+    }
+  }
+
+  const State& state_;
+  Workspace& workspace_;
+  std::vector<RigidMotion>& rigid_;
+  const bool at_end_;
+  const StartUse use_;
+  const double dt_;
+};
+
+double push_of(const ContactPoint& point) { return -dot(point.impulse, point.normal); }
+
+// What mirror faces take of an impulse on the side: the images' part and what is across the face.
+void book_faces(State& state, const Workspace& workspace, const PointSide& side, const Vector3& impulse) {
+  if (side.count == 0) return;
+  Vector3 sum{};
+  for (std::int32_t e = side.first; e < side.first + side.count; ++e) add(sum, workspace.points.stencils[e].weight);
+  for (int c = 0; c < 3; ++c) state.ledger.boundary_impulse[c] += (sum[c] - 1) * impulse[c];
+}
+
+// What a phase passed from one to another, as forces on bodies and pairs, in the ledger, and on rigid bodies.
+// grid_part: of a particle's velocity that is the grid's, which has seen what the first phase kept from the rest.
+void book(State& state, Workspace& workspace, const Phase& phase, bool at_end, double grid_part, double dt) {
+  for (ContactPoint& point : workspace.points.points) {
+    if (point.constraint.hold == Hold::Nothing) continue;
+    const Vector3& impulse = point.impulse;
+    const bool reaches = at_end || point.method->start_reaches_particles;
+    const Vector3 mean = at_end ? phase.mean(point) : Vector3{};  // the work of both phases is booked at the end
+    const double tangential_work = dot(plus(impulse, times(push_of(point), point.normal)), mean);
+    const bool heat = point.constraint.hold != Hold::Stick;
+    const double friction = heat ? -tangential_work : 0;
+    const double work = (heat ? 0 : tangential_work) - (push_of(point) + point.start_push) * dot(point.normal, mean);
+    state.ledger.friction_dissipation += friction;
+    state.ledger.contact_work += work;
+    for (const PointSide* side : {&point.a, &point.b}) {
+      const Vector3 own = times(side == &point.a ? 1 : -1, impulse);
+      if (!reaches) {
+        const Vector3 seen = times(grid_part, own), unseen = times(1 - grid_part, own);
+        if (side->body < 0) add(state.ledger.boundary_impulse, times(-1, seen));
+        if (side->rigid < 0) continue;
+        RigidMotion& body = workspace.rigid[side->rigid];
+        add(body.impulse, seen);
+        if (body.prescribed)
+          body.contact_work += dot(seen, side->before);
+        else if (side == &point.b)
+          add(state.ledger.contact_couple, cross(minus(point.b.at, point.a.at), seen));
+        add(body.kept_impulse, unseen);
+        add(body.kept_moment, cross(minus(side->at, body.centre), unseen));
+        continue;
+      }
+      if (side->body < 0) {
+        for (int c = 0; c < 3; ++c) state.ledger.boundary_impulse[c] -= own[c];
+        continue;
+      }
+      book_faces(state, workspace, *side, own);
+      if (at_end) {  // with the push of the first phase, which book_contact_forces has not kept
+        const double started = side == &point.a ? -point.start_push : point.start_push;
+        add(state.bodies[side->body].totals.contact_force, times(1 / dt, plus(own, times(started, point.normal))));
+      }
+      if (side->rigid < 0) continue;
+      RigidMotion& body = workspace.rigid[side->rigid];
+      add(body.impulse, own);
+      if (body.prescribed)
+        body.contact_work += dot(own, body.velocity_at(side->at));
+      else if (side == &point.b)
+        add(state.ledger.contact_couple, cross(minus(point.b.at, point.a.at), own));
+    }
+    if (point.b.body < 0 || impulse == Vector3{}) continue;
+    const bool ordered = point.a.body < point.b.body;
+    PairTotals& pair = pair_totals(state, std::min(point.a.body, point.b.body), std::max(point.a.body, point.b.body));
+    if (reaches) {
+      add(pair.force, times((ordered ? 1 : -1) / dt, impulse));
+      add(pair.impulse, times(ordered ? 1 : -1, impulse));
+    }
+    pair.friction_dissipation += friction;
+    pair.contact_work += work;
+  }
+}
+
+// A particle's memory of contact stands beside those of nodes.
+std::array<std::int32_t, 3> memory_of(const State& state, const ContactPoint& point) {
+  return {state.bodies[point.a.body].number[point.particle], std::numeric_limits<std::int32_t>::min(), 0};
+}
+
+}  // namespace
+
+std::int64_t ContactPoints::memory_bytes() const {
+  const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
+  std::int64_t total = bytes(points) + bytes(stencils) + bytes(found) + bytes(changes) + bytes(seen) + bytes(share) +
+                       bytes(start);
+  for (const auto& list : found) total += bytes(list);
+  return total;
+}
+
+bool met_at_points(const Model& model, std::int32_t a, std::int32_t b) {
+  const ContactRule& rule = b < 0 ? model.walls[-1 - b].rule : model.rule_of(a, b);
+  if (!by_surface(rule)) return false;
+  const auto rigid = [&](std::int32_t body) { return body < 0 || (model.bodies[body].rigid() && model.bodies[body].has_surface()); };
+  return !(rigid(a) && rigid(b));
+}
+
+void find_points(const Model& model, const State& state, Workspace& workspace) {
+  ContactPoints& points = workspace.points;
+  points.points.clear();
+  points.stencils.clear();
+  points.start.clear();
+  points.seen.resize(workspace.nodes.size());
+  points.share.resize(workspace.nodes.size());
+  points.found.resize(workspace.links.size());
+  const Feeler feeler(model, state, workspace);
+  std::exception_ptr failure;
+  const std::int64_t links = static_cast<std::int64_t>(workspace.links.size());
+#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 8) if (links > 8)
+  for (std::int64_t l = 0; l < links; ++l) try {
+      feeler.feel(workspace.links[l], workspace.kernel_groups[l], points.found[l]);
+    } catch (...) {
+#pragma omp critical(ogive_points_failure)
+      failure = std::current_exception();
+    }
+  if (failure) std::rethrow_exception(failure);
+  std::vector<std::int32_t> rigid_of(model.bodies.size(), -1);
+  for (std::size_t r = 0; r < workspace.rigid.size(); ++r)
+    rigid_of[workspace.rigid[r].body] = static_cast<std::int32_t>(r);
+  const Stenciler stenciler(model, workspace);
+  const auto make = [&](PointSide& side, bool on_surface) {
+    side.first = static_cast<std::int32_t>(points.stencils.size());
+    stenciler.make(model.field_of(side.body), side.at, on_surface, points.stencils);
+    side.count = static_cast<std::int32_t>(points.stencils.size()) - side.first;
+  };
+  for (const auto& list : points.found)
+    for (ContactPoint point : list) {
+      for (PointSide* side : {&point.a, &point.b}) {
+        side->rigid = side->body < 0 ? -1 : rigid_of[side->body];
+        side->fixed = side->body < 0 || (side->rigid >= 0 && workspace.rigid[side->rigid].prescribed);
+      }
+      if (point.a.fixed && point.b.fixed) continue;
+      if (point.a.rigid < 0) make(point.a, false);
+      if (point.b.body >= 0 && point.b.rigid < 0) make(point.b, true);
+      if (point.method->remembers)
+        point.pressed = remembers(state.contact_memory, memory_of(state, point), point.a.body, point.b.body);
+      points.points.push_back(point);
+    }
+}
+
+void start_points(const Model& model, State& state, Workspace& workspace, std::vector<RigidMotion>& rigid, double dt, StartUse use) {
+  ContactPoints& points = workspace.points;
+  Phase phase(state, workspace, rigid, false, use, dt);
+  points.changes.clear();
+  phase.solve();
+  const auto reaches = [](const ContactPoint& point) { return point.method->start_reaches_particles; };
+  for (ContactPoint& point : points.points) {
+    point.mapped = point.found;
+    point.adjusted = phase.relative(point);
+    if (use != StartUse::Strain && point.constraint.hold != Hold::Nothing && reaches(point))
+      point.start_push = std::max(push_of(point), 0.0);
+  }
+  if (use == StartUse::Strain) {
+    for (const ContactPoints::Change& change : points.changes) points.seen[change.node] = 0;
+    return;
+  }
+  // The part of each node's change that never reaches the particles, from the impulses of the methods that want it so.
+  points.start.clear();
+  for (const ContactPoints::Change& change : points.changes) points.start.push_back({change.node, {}, {}});
+  for (const ContactPoint& point : points.points) {
+    if (point.constraint.hold == Hold::Nothing || reaches(point)) continue;
+    const Vector3& impulse = point.impulse;
+    for (const PointSide* side : {&point.a, &point.b})
+      for (std::int32_t e = side->first; e < side->first + side->count; ++e) {
+        const PointNode& entry = points.stencils[e];
+        if (!points.seen[entry.node]) continue;
+        ContactPoints::Start& start = points.start[points.seen[entry.node] - 1];
+        const double factor = (side == &point.a ? -1 : 1) / workspace.nodes[entry.node].v[3];
+        for (int c = 0; c < 3; ++c) start.kept[c] += factor * entry.weight[c] * impulse[c];
+      }
+  }
+  for (ContactPoint& point : points.points)
+    for (const PointSide* side : {&point.a, &point.b})
+      for (std::int32_t e = side->first; e < side->first + side->count; ++e) {
+        const PointNode& entry = points.stencils[e];
+        if (!points.seen[entry.node]) continue;
+        const Vector3& kept = points.start[points.seen[entry.node] - 1].kept;
+        for (int c = 0; c < 3; ++c) point.kept[c] += (side == &point.a ? 1 : -1) * entry.weight[c] * kept[c];
+      }
+  for (std::size_t i = 0; i < points.changes.size(); ++i) {
+    const ContactPoints::Change& change = points.changes[i];
+    const double* v = workspace.nodes[change.node].v;
+    for (int c = 0; c < 3; ++c) points.start[i].returned[c] = change.before[c] - v[c] - points.start[i].kept[c];
+    points.seen[change.node] = 0;
+  }
+  book(state, workspace, phase, false,
+       model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction(), dt);
+}
+
+void return_start_points(Workspace& workspace) {
+  for (const ContactPoints::Start& start : workspace.points.start)
+    for (int c = 0; c < 3; ++c) workspace.nodes[start.node].v[c] += start.returned[c];
+}
+
+void end_points(State& state, Workspace& workspace, double dt) {
+  Phase phase(state, workspace, workspace.rigid, true, StartUse::MotionAndStrain, dt);
+  phase.solve();
+  book(state, workspace, phase, true, 0, dt);
+  for (const ContactPoint& point : workspace.points.points)
+    if (point.method->remembers && push_of(point) > 0)
+      remember(state.contact_memory, memory_of(state, point), point.a.body, point.b.body);
+}
+
+}  // namespace ogive
