@@ -23,7 +23,8 @@ struct Outcome {
 Outcome slid(const Numerics& numerics, double speed, double pull, double friction, double time) {
   Scene scene;
   scene.grid(1, {-4, -4, -2}, {12, 4, 5}, {0, 0, 0, 0, numerics.on_wall ? 0 : OGIVE_FACE_FIXED, 0})
-      .numerics(numerics.shape, 0.3, {pull, 0, -1}, 1, {}, numerics.order)
+      // Next to no work is done where it sticks, so that any growth of the energy is large beside it: no limit to that.
+      .numerics(numerics.shape, 0.3, {pull, 0, -1}, 1, {}, numerics.order, {}, 2, 1e30)
       .contact(numerics.method, OGIVE_DETECTION_GAP, friction, OGIVE_NORMAL_MASTER);
   const ogive_material_id soft = scene.material("soft", elastic(1e-3, 20, 0.3));
   // The slab, the first body, gives the normals: with the average the block's edges would plough.
