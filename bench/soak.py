@@ -291,6 +291,8 @@ def numbers(value, path=""):
 
 def judge(directory, code, errors):
     """The class of a run, and what there is to say."""
+    # Growing energy is told as soon as it is seen, before what ends the run.
+    errors = "".join(line for line in errors.splitlines(True) if not line.startswith("warning: the energy has grown by "))
     one_line = errors.count("\n") == 1
     if code == 2:
         return ("refused", errors.strip()) if one_line and "scene.toml" in errors else ("FAILED", errors)
@@ -301,7 +303,7 @@ def judge(directory, code, errors):
         return "FAILED", f"exit code {code}: {errors[-500:]}"
     summary = json.loads((directory / "out/summary.json").read_text())
     for path, value in numbers(summary):
-        if path.endswith(".first_failure_time"):
+        if path.endswith((".first_failure_time", ".warning_time")):  # null: never
             continue
         if value is None or not math.isfinite(value):
             return "FAILED", f"{path} is not finite"
