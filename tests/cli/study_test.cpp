@@ -169,19 +169,22 @@ TEST(Study, goes_on_after_a_kill_and_leaves_nothing_running) {
 
 TEST(Study, an_interruption_leaves_what_is_done) {
   const ScratchDirectory scratch;
+  // So many cases that the signal comes long before the last: one takes some 50 ms.
+  constexpr size_t cases = 60;
+  std::string speeds;
+  for (size_t speed = 1; speed <= cases; ++speed) speeds += std::to_string(speed) + ", ";
   write_study(scratch / "s.toml",
               "settings = [\"output.particle_interval=0\", \"output.checkpoint_steps=0\", \"stop.time=0.5\"]\n"
-              "[[sweeps]]\n[[sweeps.axes]]\nname = \"speed\"\nkey = \"parameters.V0\"\nvalues = [0.1, 1, 2, 3]\n");
+              "[[sweeps]]\n[[sweeps.axes]]\nname = \"speed\"\nkey = \"parameters.V0\"\nvalues = [" + speeds + "]\n");
   RunningProgram program(scratch.path(), {"study", "s.toml"});
   ASSERT_TRUE(wait_until([&] { return !records(scratch / "s-study" / "cases").empty(); }));
   program.send(SIGTERM);
   const Outcome outcome = program.wait();
-  if (outcome.exit_code == 0) GTEST_SKIP() << "all cases were done before the signal came";
   EXPECT_EQ(outcome.exit_code, 75);
   const json study = read_json(scratch / "s-study" / "study.json");
   EXPECT_EQ(study.at("complete"), false);
   EXPECT_GE(study.at("cases").size(), 1U);
-  EXPECT_LT(study.at("cases").size(), 4U);
+  EXPECT_LT(study.at("cases").size(), cases);
 }
 
 TEST(Study, cases_that_fail_are_results) {
