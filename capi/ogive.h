@@ -123,6 +123,20 @@ enum {
   OGIVE_FACE_FIXED = 2     /* velocity zero */
 };
 
+/* Dimensions of a world. In a two-dimensional one all lies and moves in the plane z = 0; the grid has one layer of nodes there,
+ * and z of the domain and its faces are not used. A built-in solid is the section of it with the plane, a particle's volume is
+ * that of the body it stands for: sums (mass, momentum along y, energies, forces) are those of that body. Contact by surfaces
+ * (OGIVE_DETECTION_SURFACE) is for three dimensions. */
+enum {
+  OGIVE_SPACE_THREE_DIMENSIONAL = 0,
+  OGIVE_SPACE_PLANE_STRAIN = 1, /* no strain along z; volumes are those of `thickness` along z */
+  OGIVE_SPACE_AXISYMMETRIC = 2  /* bodies of revolution about y, without twist: x is the radius, domain_min[0] must be 0 and the
+                                   face x min is a symmetry face; volumes are those of whole rings. The x components of momenta,
+                                   impulses and forces are sums of radial ones (those of the whole body vanish), with what hoop
+                                   stress gives in boundary_impulse; centre, velocity and speed of a body are the whole
+                                   body's, and angular momentum is 0. Rigid bodies move along y alone */
+};
+
 /* The background grid. */
 typedef struct ogive_grid_def {
   uint32_t struct_size;
@@ -132,6 +146,9 @@ typedef struct ogive_grid_def {
   double domain_max[3]; /* [L] upper corner, > domain_min. Where the face is symmetry or fixed, (max - min) must be a
                            whole number of cells (to 1e-6 of a cell) so that the face holds nodes. No default */
   int32_t face[6];      /* OGIVE_FACE_*: x min, x max, y min, y max, z min, z max. Default free */
+  int32_t space;        /* OGIVE_SPACE_*. Default three-dimensional */
+  int32_t reserved1;
+  double thickness;     /* [L] > 0, with plane strain: of what is modelled along z. Default 1 */
 } ogive_grid_def;
 OGIVE_API void ogive_grid_def_init(ogive_grid_def* def, size_t size);
 /* Before the bodies; another call replaces the grid. */
@@ -364,10 +381,13 @@ typedef struct ogive_solid_def {
   double spacing[3];    /* [L] > 0, in the solid's own axes */
 } ogive_solid_def;
 OGIVE_API void ogive_solid_def_init(ogive_solid_def* def, size_t size);
-/* A body filled from a built-in solid; particle volumes sum to the exact volume of the solid. */
+/* A body filled from a built-in solid; particle volumes sum to the exact volume of the solid. In a two-dimensional world it is
+ * the solid's section with z = 0: its centre and one of its axes must lie there, the other axes along or across z; particles
+ * lie on the lattice of its axes in the plane. In an axisymmetric one the section turns about y: it must lie at x >= 0 or be
+ * symmetric about x = 0, and the volumes sum to that of the body of revolution. A polar lattice is then a Cartesian one. */
 OGIVE_API ogive_status ogive_body_add_solid(ogive_world* world, const char* name, const ogive_body_def* def,
                                             const ogive_solid_def* solid, ogive_body_id* id);
-/* The particles such a body would get. First call with xyz = volume = NULL to learn *count, then with room for it. */
+/* The particles such a body would get in the world as it is. First call with xyz = volume = NULL to learn *count, then with room for it. */
 OGIVE_API ogive_status ogive_solid_particles(ogive_world* world, const ogive_solid_def* solid, int64_t* count, double* xyz,
                                              double* volume);
 

@@ -77,6 +77,8 @@ class Builder {
     assign(def.domain_min, scene_.grid.lower);
     assign(def.domain_max, scene_.grid.upper);
     std::copy(scene_.grid.faces.begin(), scene_.grid.faces.end(), def.face);
+    def.space = scene_.grid.space;
+    assign(def.thickness, scene_.grid.thickness);
     require(ogive_world_set_grid(world_, &def), "grid");
   }
 

@@ -91,12 +91,22 @@ Units read_units(const Section& root) {
 }
 
 GridScene read_grid(const Section& root) {
-  const Section section = root.table("grid", Names{"cell_size", "lower", "upper", "faces"});
+  const Section section = root.table("grid", Names{"cell_size", "lower", "upper", "faces", "space", "thickness"});
   GridScene grid;
+  grid.space = section
+                   .optional_choice("space", {{"three_dimensional", OGIVE_SPACE_THREE_DIMENSIONAL},
+                                              {"plane_strain", OGIVE_SPACE_PLANE_STRAIN},
+                                              {"axisymmetric", OGIVE_SPACE_AXISYMMETRIC}})
+                   .value_or(OGIVE_SPACE_THREE_DIMENSIONAL);
+  grid.thickness = section.optional_number("thickness", kPositive);
+  if (grid.thickness && grid.space != OGIVE_SPACE_PLANE_STRAIN) {
+    section.refuse("thickness", "needs space = \"plane_strain\"");
+  }
   grid.cell_size = section.number("cell_size", kPositive);
   grid.lower = section.vector("lower");
   grid.upper = section.vector("upper");
-  for (size_t axis = 0; axis < 3; ++axis) {
+  const size_t axes = grid.space == OGIVE_SPACE_THREE_DIMENSIONAL ? 3 : 2;
+  for (size_t axis = 0; axis < axes; ++axis) {
     if (grid.upper[axis] > grid.lower[axis]) continue;
     section.refuse(child_path("upper", axis), "must be > grid." + child_path("lower", axis) + " (" +
                                                   shortest(grid.lower[axis]) + "), got " + shortest(grid.upper[axis]));

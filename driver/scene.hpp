@@ -23,6 +23,8 @@ struct GridScene {
   double cell_size = 0;
   Vector3 lower{}, upper{};
   std::array<int32_t, 6> faces{};
+  int32_t space = 0;
+  std::optional<double> thickness;
 
   bool operator==(const GridScene&) const = default;
 };

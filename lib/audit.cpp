@@ -79,6 +79,7 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
       audit.first_moment[c] += part.first_moment[c];
     }
   }
+  if (model.grid.axisymmetric()) audit.angular_momentum = {};  // of the whole body
   return audit;
 }
 
@@ -113,7 +114,8 @@ void check_stop(const Model& model, State& state) {
   double mass = 0;
   for (const Group& group : body.groups)
     for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) mass += body.position[4 * p + 3];
-  const Vector3 momentum = body_momentum(body);
+  Vector3 momentum = body_momentum(body);
+  if (model.grid.axisymmetric()) momentum[0] = 0;  // of the whole body
   const Vector3& initial = body.totals.initial_velocity;
   double speed = 0, along = 0, initial_speed = 0;
   for (int c = 0; c < 3; ++c) {

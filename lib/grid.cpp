@@ -306,7 +306,7 @@ void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable&
         for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
           if ((workspace.slots[s].rigid >= 0) != rigid) continue;
           if (workspace.slots[s].block[axis] != floor_div4(coordinate)) continue;
-          for (int n = 0; n < block_nodes; ++n)
+          for (int n = 0; n < workspace.nodes_in_use; ++n)
             if (((n >> (2 * axis)) & 3) == (coordinate & 3)) visit(s, n);
         }
       };
@@ -341,7 +341,7 @@ void for_nodes_in(const Model& model, const Workspace& workspace, const Space& s
     const Slot& slot = workspace.slots[s];
     if (slot.rigid >= 0) continue;  // its motion is prescribed or free
     if (body >= 0 && slot.field != model.field_of(body)) continue;
-    for (int n = 0; n < block_nodes; ++n) {
+    for (int n = 0; n < workspace.nodes_in_use; ++n) {
       Vector3 x;
       for (int axis = 0; axis < 3; ++axis)
         x[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * slot.block[axis] + ((n >> (2 * axis)) & 3));
@@ -388,6 +388,8 @@ KernelGroup describe_group(const Model& model, const State& state, Workspace& wo
   k.time_step = 0;
   k.grid_velocity_fraction = model.numerics.grid_velocity_fraction();
   k.inverse_density = 1.0 / model.material_of(link.body).density;
+  k.axisymmetric = grid.axisymmetric();
+  k.section_share = grid.planar() ? grid.section_share() : 0;
   for (int axis = 0; axis < 3; ++axis) {
     k.corner[axis] = link.corner[axis];
     k.tile_low[axis] = link.tile_low[axis];
@@ -434,6 +436,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
         link.tile_high[axis] = group.high[axis] + 3;
         link.corner[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * group.block[axis] - 1);
       }
+      if (model.grid.planar()) link.tile_low[2] = link.tile_high[2] = 1;  // the block's first layer
       workspace.links.push_back(link);
     }
   const auto pencil_order = [&](const GroupLinks& link) {

@@ -22,6 +22,7 @@
 namespace ogive {
 
 constexpr int block_nodes = block_cells * block_cells * block_cells;
+constexpr int layer_nodes = block_cells * block_cells;  // of the lowest layer along z, which come first
 
 struct Slot {
   std::array<std::int32_t, 3> block{};
@@ -109,6 +110,7 @@ struct Workspace {
   const KernelTable* kernels = nullptr;
   int threads = 1;
   bool linked = false;  // the slots fit the groups
+  int nodes_in_use = block_nodes;  // of a slot, the first ones: a layer where the model is two-dimensional
 
   std::vector<Slot> slots;                // ordered by block (z, y, x), then field
   AlignedVector<NodeRecord> nodes;        // 64 a slot

@@ -14,6 +14,8 @@
 namespace ogive {
 namespace {
 
+constexpr double pi = 3.141592653589793238;
+
 std::string text(double x) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.6g", x);
@@ -147,8 +149,22 @@ void Model::set_pair(const PairRule& pair) {
     pairs.insert(place, ordered);
 }
 
+double Grid::section_share() const { return 1 / (axisymmetric() ? 2 * pi : thickness); }
+
+void Grid::lay_in_plane() {
+  if (!planar()) return;
+  domain_min[2] = 0;
+  domain_max[2] = cell_size;
+  face[4] = face[5] = Face::Free;
+  if (axisymmetric()) face[0] = Face::Symmetry;
+}
+
 void Model::validate_grid() const {
   require_positive("cell_size", grid.cell_size);
+  require_choice("space", grid.space, 3);
+  require_positive("thickness", grid.thickness);
+  if (grid.axisymmetric())
+    require(grid.domain_min[0] == 0, "domain_min[x]", "0 in an axisymmetric model, whose axis is x = 0", grid.domain_min[0]);
   const char axis_name[] = {'x', 'y', 'z'};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string index = std::string("[") + axis_name[axis] + "]";
@@ -165,6 +181,35 @@ void Model::validate_grid() const {
     require(grid.face[2 * axis + 1] == Face::Free || cells >= 3, "domain" + index,
             "at least 3 cells where its max face is symmetry or fixed", cells);
   }
+}
+
+// What acts out of the plane of a two-dimensional model, or across its axis.
+void Model::validate_planar() const {
+  if (!grid.planar()) return;
+  const auto in_plane = [](const std::string& field, double out_of_plane) {
+    require(out_of_plane == 0, field, "0 in a two-dimensional model", out_of_plane);
+  };
+  in_plane("gravity[z]", numerics.gravity[2]);
+  if (grid.axisymmetric()) require(numerics.gravity[0] == 0, "gravity[x]", "0 in an axisymmetric model", numerics.gravity[0]);
+  for (const Wall& wall : walls) {
+    in_plane("wall normal[z]", wall.normal[2]);
+    validate_planar(wall.rule, "wall detection");
+  }
+  validate_planar(contact, "contact detection");
+  for (const PairRule& pair : pairs) validate_planar(pair.rule, "contact pair detection");
+  for (const Body& body : bodies)
+    for (const MotionKnot& knot : body.motion) {
+      const std::string prefix = "body \"" + body.name + "\": ";
+      in_plane(prefix + "motion velocity[z]", knot.velocity[2]);
+      for (int axis = 0; axis < 2; ++axis)
+        in_plane(prefix + "motion angular_velocity[" + "xy"[axis] + "]", knot.angular_velocity[axis]);
+    }
+}
+
+void Model::validate_planar(const ContactRule& rule, const char* field) const {
+  if (by_surface(rule))
+    throw Error(ErrorKind::Argument,
+                std::string(field) + ": must be \"gap\" or \"shared_node\" in a two-dimensional model, got \"surface\"");
 }
 
 void Model::validate_numerics() const {
@@ -276,6 +321,7 @@ void Model::complete() {
             "at most " + std::to_string(most_particle_loads), count);
   }
   known(stop.body, "stop body", true);
+  validate_planar();
 
   own_fields = contact.method != ContactMethod::SingleField && bodies.size() > 1;
   for (const PairRule& pair : pairs) own_fields = own_fields || pair.rule.method != ContactMethod::SingleField;
@@ -332,6 +378,10 @@ void Model::exchange(Archive& a) {
   a.value("model/grid/domain_min", grid.domain_min);
   a.value("model/grid/domain_max", grid.domain_max);
   a.value("model/grid/face", grid.face);
+  if (a.version() >= 3) {
+    a.value("model/grid/space", grid.space);
+    a.value("model/grid/thickness", grid.thickness);
+  }
   a.value("model/numerics/shape_function", numerics.shape_function);
   a.value("model/numerics/time_step_factor", numerics.time_step_factor);
   a.value("model/numerics/maximum_time_step", numerics.maximum_time_step);
@@ -488,6 +538,9 @@ void Model::exchange(Archive& a) {
     for (const Load& load : loads) validate_load(load);
     validate_contact(contact, "contact ");
     for (const PairRule& pair : pairs) validate_contact(pair.rule, "contact pair ");
+    const Grid as_saved = grid;
+    grid.lay_in_plane();
+    if (grid != as_saved) throw Error(ErrorKind::Format, "model/grid: a two-dimensional model must lie in its plane");
     complete();
   }
 }

@@ -19,6 +19,7 @@ namespace ogive {
 
 class Archive;
 
+enum class WorldSpace : std::int32_t { ThreeDimensional = 0, PlaneStrain = 1, Axisymmetric = 2 };
 enum class Face : std::int32_t { Free = 0, Symmetry = 1, Fixed = 2 };
 enum class ShapeFunction : std::int32_t { Linear = 0, QuadraticBSpline = 1, Gimp = 2 };
 enum class Transfer : std::int32_t { Flip = 0, AffineFlip = 1, Apic = 2, Xpic = 3 };
@@ -56,6 +57,19 @@ struct Grid {
   Vector3 domain_min{};
   Vector3 domain_max{};
   std::array<Face, 6> face{};  // x min, x max, y min, y max, z min, z max
+  WorldSpace space = WorldSpace::ThreeDimensional;
+  double thickness = 1;        // plane strain
+
+  // Two-dimensional: particles and nodes in the plane z = 0; axisymmetric: x is the radius, y the axis.
+  bool planar() const { return space != WorldSpace::ThreeDimensional; }
+  bool axisymmetric() const { return space == WorldSpace::Axisymmetric; }
+  // Area of a section by the volume that belongs to it: at radius 1, and anywhere. Planar models only.
+  double section_share() const;
+  double section_share_at(double x) const { return axisymmetric() ? section_share() / x : section_share(); }
+  // Two-dimensional models: one layer of cells along z, and a mirror at the axis.
+  void lay_in_plane();
+
+  bool operator==(const Grid&) const = default;
 };
 
 struct Numerics {
@@ -213,6 +227,8 @@ struct Model {
   // Each throws Error naming field, value and expectation.
   void validate_grid() const;
   void validate_numerics() const;
+  void validate_planar() const;
+  void validate_planar(const ContactRule& rule, const char* field) const;
   void validate_clamp(const Clamp& clamp) const;
   void validate_load(const Load& load) const;
   void validate_contact(const ContactRule& rule, const char* where) const;

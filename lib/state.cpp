@@ -269,6 +269,11 @@ void State::exchange(const Model& model, Archive& a) {
             if (!(cell > g.low[axis] - 0.5 && cell < g.high[axis] + 1.5))
               throw Error(ErrorKind::Format, at + "position: particle " + std::to_string(p) + " is outside its group");
           }
+      if (model.grid.axisymmetric())
+        for (std::int64_t p = 0; p < n; ++p)
+          if (!(body.position[4 * p] > 0))
+            throw Error(ErrorKind::Format, at + "position: particle " + std::to_string(p) + " must have a radius > 0, found " +
+                                               std::to_string(body.position[4 * p]));
     }
   }
   if (a.loading() && !(stable_time_step > 0))

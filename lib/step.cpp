@@ -34,6 +34,7 @@ void filtered_velocities(Workspace& workspace);
 void nodal_velocities(Workspace& workspace);
 void update_stress(const Model& model, State& state, Workspace& workspace, double dt);
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
+void book_hoop_force(const Model& model, State& state, const Workspace& workspace, double dt);
 void map_external_force(const Model& model, State& state, Workspace& workspace);
 void measure_external_force(const Model& model, State& state, Workspace& workspace, double dt);
 void trial_velocities(const Model& model, Workspace& workspace, double dt);
@@ -72,6 +73,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   } else {
     map_internal_force(model, state, workspace, dt);             // (31)
   }
+  book_hoop_force(model, state, workspace, dt);
   map_external_force(model, state, workspace);                   // loads of the host
   fold_force(state, workspace, dt);
   trial_velocities(model, workspace, dt);                        // (32), (11) or (26)
@@ -136,15 +138,16 @@ void for_coloured_groups(Workspace& workspace, Work&& work) {
   }
 }
 
-// Runs work(node record) over all nodes.
+// Runs work(node) over all nodes in use.
 template <class Work>
 void for_nodes(Workspace& workspace, Work&& work) {
-  const std::int64_t count = static_cast<std::int64_t>(workspace.nodes.size());
+  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
 #pragma omp parallel num_threads(workspace.threads)
   {
     const FlushSubnormals flush;
 #pragma omp for schedule(static)
-    for (std::int64_t i = 0; i < count; ++i) work(workspace.nodes[i]);
+    for (std::int64_t s = 0; s < slots; ++s)
+      for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) work(i);
   }
 }
 
@@ -152,7 +155,8 @@ void clear_grid(Workspace& workspace) {
   const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
 #pragma omp parallel for num_threads(workspace.threads) schedule(static)
   for (std::int64_t s = 0; s < slots; ++s)
-    std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0, block_nodes * sizeof(NodeRecord));
+    std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0,
+                static_cast<std::size_t>(workspace.nodes_in_use) * sizeof(NodeRecord));
 }
 
 void clear_contacts(Workspace& workspace) {
@@ -208,13 +212,11 @@ std::array<NodeRecord*, 27> filter_of(Workspace& workspace, const GroupLinks& li
 // XPIC(k), see transfer/xpic.hpp. With Q the pass to the particles and back to the grid, v_r = Q^(r-1) v_1 and
 // v* = sum_r (-1)^(r+1) C(k, r) Q^(r-1) v_1 = sum_{j=0..k-1} (1 - Q)^j v_1, so that k - 1 times v* <- v_1 + (1 - Q) v*.
 void filter_velocities(const Model& model, State& state, Workspace& workspace) {
-  const std::int64_t count = static_cast<std::int64_t>(workspace.nodes.size());
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-  for (std::int64_t i = 0; i < count; ++i) {
+  for_nodes(workspace, [&](std::int64_t i) {
     for (int c = 0; c < 4; ++c) workspace.filter[i].f[c] = 0;
     for (int c = 0; c < 3; ++c) workspace.filter[i].v[c] = workspace.nodes[i].v[3] > 0 ? workspace.nodes[i].v[c] : 0;
     workspace.filter[i].v[3] = 0;
-  }
+  });
   unfold_filter(workspace);
   const auto pass = workspace.kernels->optional->filter_velocity[static_cast<int>(model.numerics.shape_function)];
   for (int r = 1; r < model.numerics.xpic_order; ++r) {
@@ -226,22 +228,21 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
       pass(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link), nodes);
     });
     fold_filter(workspace);
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-    for (std::int64_t i = 0; i < count; ++i) {
+    for_nodes(workspace, [&](std::int64_t i) {
       NodeRecord& filter = workspace.filter[i];
       const NodeRecord& node = workspace.nodes[i];
       for (int c = 0; c < 3; ++c) {
         if (node.v[3] > 0) filter.v[c] += node.v[c] - filter.f[c] / node.v[3];
         filter.f[c] = 0;
       }
-    }
+    });
     unfold_filter(workspace);
   }
   workspace.filter_momentum = {};
   if (workspace.faces.empty()) return;
   for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
     if (workspace.slots[s].rigid >= 0) continue;
-    for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i)
+    for (std::size_t i = s * block_nodes; i < s * block_nodes + static_cast<std::size_t>(workspace.nodes_in_use); ++i)
       for (int c = 0; c < 3; ++c)
         workspace.filter_momentum[c] += workspace.nodes[i].v[3] * (workspace.filter[i].v[c] - workspace.nodes[i].v[c]);
   }
@@ -266,7 +267,8 @@ void filtered_velocities(Workspace& workspace) {
 // Momentum to velocity. There is no mass cut-off: a node with ever so little mass has a force in proportion, and dropping
 // it would lose momentum.
 void nodal_velocities(Workspace& workspace) {
-  for_nodes(workspace, [&](NodeRecord& node) {
+  for_nodes(workspace, [&](std::int64_t i) {
+    NodeRecord& node = workspace.nodes[i];
     if (!(node.v[3] > 0)) return;
     const double inverse = 1.0 / node.v[3];
     for (int c = 0; c < 3; ++c) node.v[c] *= inverse;
@@ -312,6 +314,20 @@ void update_stress(const Model& model, State& state, Workspace& workspace, doubl
   }
 }
 
+// In an axisymmetric model the sum of the radial momenta, which is no momentum of the whole body, is changed by the hoop
+// stress. It is the sum of the internal forces along x, as all others of theirs vanish; the axis is held to give it.
+void book_hoop_force(const Model& model, State& state, const Workspace& workspace, double dt) {
+  if (!model.grid.axisymmetric()) return;
+  double force = 0;
+  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+    if (workspace.slots[s].rigid >= 0) continue;
+    double part = 0;
+    for (int n = 0; n < workspace.nodes_in_use; ++n) part += workspace.nodes[s * block_nodes + n].f[0];
+    force += part;
+  }
+  state.ledger.boundary_impulse[0] += force * dt;
+}
+
 bool any_loads(const Model& model, const State& state) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b)
     if (particles_loaded(model, state, static_cast<int>(b))) return true;
@@ -337,7 +353,8 @@ void measure_external_force(const Model& model, State& state, Workspace& workspa
 // Node records become {velocity, mass | trial velocity}.
 void trial_velocities(const Model& model, Workspace& workspace, double dt) {
   const Vector3 g = model.numerics.gravity;
-  for_nodes(workspace, [&](NodeRecord& node) {
+  for_nodes(workspace, [&](std::int64_t i) {
+    NodeRecord& node = workspace.nodes[i];
     if (!(node.v[3] > 0)) {
       for (double& c : node.f) c = 0;
       return;
@@ -353,7 +370,7 @@ void book_gravity(const Model& model, State& state, const Workspace& workspace, 
   if (g == Vector3{}) return;
   for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
     if (workspace.slots[s].rigid >= 0) continue;
-    for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {
+    for (std::size_t i = s * block_nodes; i < s * block_nodes + static_cast<std::size_t>(workspace.nodes_in_use); ++i) {
       const NodeRecord& node = workspace.nodes[i];
       for (int c = 0; c < 3; ++c) {
         state.ledger.external_impulse[c] += node.v[3] * g[c] * dt;
@@ -382,7 +399,7 @@ void accelerations(State& state, Workspace& workspace, double dt) {
       double given = 0;
       workspace.slot_given[s] = 0;
       if (workspace.slots[s].rigid >= 0) continue;
-      for (std::int64_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {
+      for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) {
         NodeRecord& node = workspace.nodes[i];
         for (int c = 0; c < 3; ++c) {
           const double start = node.v[c], end = node.f[c];
@@ -440,7 +457,8 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
 }  // namespace
 
 void prepare_state(const Model& model, State& state, Workspace& workspace) {
-  workspace.kernels = &kernel_table();
+  workspace.kernels = model.grid.planar() ? kernel_table().planar : &kernel_table();
+  workspace.nodes_in_use = model.grid.planar() ? layer_nodes : block_nodes;
   workspace.materials.clear();
   for (const Body& body : model.bodies)
     workspace.materials.push_back(kernel_material(model.materials[body.material], model.grid.cell_size));

@@ -56,7 +56,7 @@ class Finder {
   void find(const MixedBlock& block, BlockContacts& contacts) {
     contacts.clear();
     have_cloud_ = false;
-    for (int node = 0; node < block_nodes; ++node) {
+    for (int node = 0; node < workspace_.nodes_in_use; ++node) {
       ContactNode at;
       at.node = node;
       at.first_field = static_cast<std::int32_t>(contacts.fields.size());
@@ -78,7 +78,9 @@ class Finder {
 
  private:
   void collect_fields(const MixedBlock& block, ContactNode& at, BlockContacts& contacts) {
-    const double h = model_.grid.cell_size, cell_volume = h * h * h;
+    // The sums of a two-dimensional model are those of the section.
+    const bool planar = model_.grid.planar();
+    const double h = model_.grid.cell_size, cell_volume = planar ? h * h : h * h * h;
     for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) {
       const Slot& slot = workspace_.slots[s];
       const NodeRecord& record = workspace_.nodes[static_cast<std::size_t>(s) * block_nodes + at.node];
@@ -93,14 +95,15 @@ class Finder {
       if (slot.rigid >= 0 && !field.fixed) at.coupled = true;
       field.mass = record.v[3];
       field.fill = sums.volume / cell_volume;
-      const double inverse_density = 1.0 / model_.material_of(slot.field).density;
+      const double density = model_.material_of(slot.field).density, inverse_density = 1.0 / density;
       for (int c = 0; c < 3; ++c) {
         field.outward[c] = sums.gradient[c];
         field.gradient[c] = sums.gradient[c] * inverse_density;
       }
       // Deep inside a body the gradient is round-off.
       const double steepness = length(field.outward) * model_.grid.cell_size;
-      if (!(steepness > least_steepness * field.mass && make_unit(field.outward))) field.outward = {};
+      const double mass = planar ? sums.volume * density : field.mass;
+      if (!(steepness > least_steepness * mass && make_unit(field.outward))) field.outward = {};
       if (workspace_.contact_needs.occupied)
         for (int cell = 0; cell < 8; ++cell)
           if (workspace_.occupied[place] >> cell & 1)
@@ -194,6 +197,10 @@ class Finder {
   bool into_faces(const ContactNode& at, Vector3& normal) const {
     // In a symmetry plane the normal lies in the plane; the sums say so, other rules to round-off.
     bool changed = false;
+    if (model_.grid.planar() && normal[2] != 0) {
+      normal[2] = 0;
+      changed = true;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const double cells = (model_.grid.domain_max[axis] - model_.grid.domain_min[axis]) / model_.grid.cell_size;
       const bool on_face = (model_.grid.face[2 * axis] != Face::Free && at.index[axis] == 0) ||

@@ -2,6 +2,7 @@
 #include "loads/loads.hpp"
 
 #define OGIVE_ISA_NAMESPACE loads
+#include "shape/planar.hpp"
 #include "shape/weights.hpp"
 
 namespace ogive {
@@ -15,7 +16,11 @@ void for_particle_nodes(Workspace& workspace, const GroupLinks& link, double inv
   Lanes xi{}, first, w[Shape::nodes], d[Shape::nodes];
   for (int axis = 0; axis < 3; ++axis) loads::set_lane(xi, axis, (x[axis] - link.corner[axis]) * inverse_cell);
   Shape::at(xi, first, w, d);
-  for (int k = 0; k < Shape::nodes; ++k)
+  if constexpr (loads::is_planar<Shape>) {
+    loads::set_lane(first, 2, 1.0);
+    loads::set_lane(w[0], 2, 1.0);
+  }
+  for (int k = 0; k < loads::layers_of<Shape>; ++k)
     for (int j = 0; j < Shape::nodes; ++j)
       for (int i = 0; i < Shape::nodes; ++i) {
         // Tile node t is node (t + 3) % 4 of neighbour block (t + 3) / 4 (transfer/tile.hpp).
@@ -30,11 +35,17 @@ void for_particle_nodes(Workspace& workspace, const GroupLinks& link, double inv
 template <class Visit>
 void for_particle_nodes(const Model& model, Workspace& workspace, const GroupLinks& link, const double* x, Visit&& visit) {
   const double inverse_cell = 1.0 / model.grid.cell_size;
+  const auto visit_by = [&](auto shape) {
+    using Shape = decltype(shape);
+    if (model.grid.planar())
+      for_particle_nodes<loads::Planar<Shape>>(workspace, link, inverse_cell, x, visit);
+    else
+      for_particle_nodes<Shape>(workspace, link, inverse_cell, x, visit);
+  };
   switch (model.numerics.shape_function) {
-    case ShapeFunction::Linear: return for_particle_nodes<loads::LinearShape>(workspace, link, inverse_cell, x, visit);
-    case ShapeFunction::QuadraticBSpline:
-      return for_particle_nodes<loads::QuadraticBSplineShape>(workspace, link, inverse_cell, x, visit);
-    case ShapeFunction::Gimp: return for_particle_nodes<loads::GimpShape>(workspace, link, inverse_cell, x, visit);
+    case ShapeFunction::Linear: return visit_by(loads::LinearShape{});
+    case ShapeFunction::QuadraticBSpline: return visit_by(loads::QuadraticBSplineShape{});
+    case ShapeFunction::Gimp: return visit_by(loads::GimpShape{});
   }
 }
 

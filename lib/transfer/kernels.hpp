@@ -43,6 +43,9 @@ struct KernelGroup {
   NodeRecord* nodes[27];          // node records of the neighbour blocks, x fastest, null where none is touched
   ContactRecord* contact[27];     // likewise; null where no second field is
   double bound_low[4], bound_high[4];      // where particles may be until the next binning
+  // Two-dimensional models: area of a section by its volume, where axisymmetric at radius 1.
+  double section_share;
+  bool axisymmetric;
 };
 
 struct KernelParticles {
@@ -112,6 +115,7 @@ struct KernelTable {
   // Eqs. (33), (34) by shape function, without and with affine velocity.
   void (*update_particles[shape_count][2])(const KernelGroup&, const KernelParticles&, MoveSums&);
   const OptionalKernels* optional;
+  const KernelTable* planar;  // the same of two-dimensional models; null in that table itself
 };
 
 // The best table for this processor, or the one that the environment variable OGIVE_ISA names (x86-64-v2, x86-64-v3,

@@ -14,6 +14,7 @@ namespace OGIVE_ISA_NAMESPACE {
     update_stress<Shape, strength_johnson_cook, eos_mie_gruneisen>}}
 
 extern const OptionalKernels optional_kernels;  // optional_kernels_isa.cpp
+extern const KernelTable planar_table;              // planar_kernels_isa.cpp
 extern const KernelTable table;
 const KernelTable table = {
     OGIVE_TEXT(OGIVE_ISA_NAMESPACE),
@@ -27,6 +28,7 @@ const KernelTable table = {
      {update_particles<QuadraticBSplineShape, false>, update_particles<QuadraticBSplineShape, true>},
      {update_particles<GimpShape, false>, update_particles<GimpShape, true>}},
     &optional_kernels,
+    &planar_table,
 };
 
 }  // namespace OGIVE_ISA_NAMESPACE

@@ -23,6 +23,28 @@ OGIVE_INLINE void scatter_stress(const Weights& weights, const Symmetric<Lanes>&
     scatter_slopes<Shape, Beside::Derivatives, true>(weights, lane, Record{}, X[lane], Y[lane], Z[lane], force);
 }
 
+// The same in a two-dimensional model; where axisymmetric, -V (sigma - q I)_zz N / r is the force of the hoop stress.
+template <class Shape>
+OGIVE_INLINE void scatter_planar_stress(const Weights& weights, const Symmetric<Lanes>& stress, Lanes cells_by_radius,
+                                        Scatter<Shape>& force) {
+  Lanes X[4] = {stress.xx, stress.xy, Lanes{}, Lanes{}};
+  Lanes Y[4] = {stress.xy, stress.yy, Lanes{}, Lanes{}};
+  Lanes hoop[4] = {stress.zz * cells_by_radius, Lanes{}, Lanes{}, Lanes{}};
+  transpose(X[0], X[1], X[2], X[3]);
+  transpose(Y[0], Y[1], Y[2], Y[3]);
+  transpose(hoop[0], hoop[1], hoop[2], hoop[3]);
+#pragma GCC unroll 1
+  for (int lane = 0; lane < lane_count; ++lane)
+    scatter_slopes<Shape, Beside::Derivatives, false>(weights, lane, hoop[lane], X[lane], Y[lane], Record{}, force);
+}
+
+// The x coordinates of four particles.
+OGIVE_INLINE Lanes load_x(const KernelParticles& particles, std::int64_t p) {
+  Lanes x, y, z, mass;
+  load_records(particles.position + 4 * p, x, y, z, mass);
+  return x;
+}
+
 // -V (sigma - q I) / h, `volume` being V / h.
 template <class V>
 OGIVE_INLINE Symmetric<V> stress_times_volume(const Symmetric<V>& stress, V volume, V q) {
@@ -78,7 +100,11 @@ void map_internal_force(const KernelGroup& group, const KernelParticles& particl
     const Lanes volume =
         mass * (group.inverse_density * group.inverse_cell) * load_aligned<Lanes>(particles.volume_ratio + p);
     const Lanes q = particles.viscous_pressure ? load_aligned<Lanes>(particles.viscous_pressure + p) : Lanes{};
-    scatter_stress<Shape>(weights, stress_times_volume(load_stress<Lanes>(particles, p), volume, q), sums);
+    const Symmetric<Lanes> product = stress_times_volume(load_stress<Lanes>(particles, p), volume, q);
+    if constexpr (is_planar<Shape>)
+      scatter_planar_stress<Shape>(weights, product, cells_by_radius(group, x), sums);
+    else
+      scatter_stress<Shape>(weights, product, sums);
   }
   Scatter<Shape>::end(sums);
   add_force(group, force);
@@ -120,6 +146,9 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
         transpose(gradient[b][0], gradient[b][1], gradient[b][2], gradient[b][3]);
         for (int a = 0; a < 3; ++a) store_aligned(gradients[a][b] + i, gradient[b][a]);
       }
+      // The hoop rate v_r / r, which vanishes in plane strain.
+      if constexpr (is_planar<Shape>)
+        store_aligned(gradients[2][2] + i, motion[0] * cells_by_radius(group, load_x(particles, start + i)));
     }
     for (int part = 0; part < count; part += law_width) {
       const std::int64_t p = start + part;
@@ -208,12 +237,16 @@ void update_stress(const KernelGroup& group, const KernelParticles& particles, c
       }
     }
     if (!particles.displacement)
-      for (int i = 0; i < count; i += lane_count)
-        scatter_stress<Shape>(weights[i / lane_count],
-                              {load_aligned<Lanes>(products[0] + i), load_aligned<Lanes>(products[1] + i),
-                               load_aligned<Lanes>(products[2] + i), load_aligned<Lanes>(products[3] + i),
-                               load_aligned<Lanes>(products[4] + i), load_aligned<Lanes>(products[5] + i)},
-                              forces);
+      for (int i = 0; i < count; i += lane_count) {
+        const Symmetric<Lanes> product = {load_aligned<Lanes>(products[0] + i), load_aligned<Lanes>(products[1] + i),
+                                          load_aligned<Lanes>(products[2] + i), load_aligned<Lanes>(products[3] + i),
+                                          load_aligned<Lanes>(products[4] + i), load_aligned<Lanes>(products[5] + i)};
+        if constexpr (is_planar<Shape>)
+          scatter_planar_stress<Shape>(weights[i / lane_count], product,
+                                       cells_by_radius(group, load_x(particles, start + i)), forces);
+        else
+          scatter_stress<Shape>(weights[i / lane_count], product, forces);
+      }
   }
   if (!particles.displacement) {
     Scatter<Shape>::end(forces);
