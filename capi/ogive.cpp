@@ -1319,6 +1319,7 @@ ogive_status ogive_world_prepare(ogive_world* world) {
         for (Body& body : world->model.bodies) body.surface = {};  // no rule asks for it
       refuse_overlap(world->model, world->state);
       select_loaded_particles(world->model, world->state);
+      for (const LoadState& load : world->state.loads) load_value(world, load.value.data());  // the grid may be newer
       for (std::size_t i = 0; i < world->model.loads.size(); ++i)
         if (world->model.loads[i].kind == LoadKind::Traction && !(world->state.loads[i].mass > 0))
           refuse("load " + std::to_string(i) +

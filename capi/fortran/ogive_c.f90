@@ -24,6 +24,9 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_FACE_FREE = 0
   integer(c_int32_t), parameter :: OGIVE_FACE_SYMMETRY = 1
   integer(c_int32_t), parameter :: OGIVE_FACE_FIXED = 2
+  integer(c_int32_t), parameter :: OGIVE_SPACE_THREE_DIMENSIONAL = 0
+  integer(c_int32_t), parameter :: OGIVE_SPACE_PLANE_STRAIN = 1
+  integer(c_int32_t), parameter :: OGIVE_SPACE_AXISYMMETRIC = 2
   integer(c_int32_t), parameter :: OGIVE_SHAPE_LINEAR = 0
   integer(c_int32_t), parameter :: OGIVE_SHAPE_QUADRATIC_BSPLINE = 1
   integer(c_int32_t), parameter :: OGIVE_SHAPE_GIMP = 2
@@ -102,6 +105,9 @@ module ogive_c
     real(c_double) :: domain_min(3)
     real(c_double) :: domain_max(3)
     integer(c_int32_t) :: face(6)
+    integer(c_int32_t) :: space
+    integer(c_int32_t) :: reserved1
+    real(c_double) :: thickness
   end type ogive_grid_def
 
   type, bind(C) :: ogive_numerics_def

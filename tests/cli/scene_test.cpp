@@ -203,7 +203,7 @@ TEST(Scene, messages_name_place_key_value_and_expectation) {
             "--set materials.zinc.density=-7850: materials.zinc.density: must be > 0, got -7850");
   EXPECT_EQ(refusal({{"grid.cell_sise", "1"}}),
             "--set grid.cell_sise=1: grid.cell_sise: unknown key; did you mean \"cell_size\"? "
-            "(known here: cell_size, lower, upper, faces)");
+            "(known here: cell_size, lower, upper, faces, space, thickness)");
   EXPECT_EQ(refusal({{"stop.time", "nan"}}), "--set stop.time=nan: stop.time: must be finite, got nan");
   EXPECT_EQ(refusal({{"stop.time", "V1*2"}}),
             "--set stop.time=V1*2: stop.time: must be a number or an expression, got \"V1*2\": the name \"V1\" is "
