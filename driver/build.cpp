@@ -191,7 +191,7 @@ class Builder {
   }
 
   FilledMesh mesh_of(const BodyScene& body, const std::string& path) {
-    FilledMesh filled = fill_mesh(std::get<MeshShape>(body.shape), scene_.place(path + ".mesh"));
+    FilledMesh filled = fill_mesh(std::get<MeshShape>(body.shape), scene_.grid, scene_.place(path + ".mesh"));
     if (filled.repaired) notes_.push_back("mesh of body " + body.name + ":\n" + filled.report);
     return filled;
   }

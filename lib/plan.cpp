@@ -107,10 +107,14 @@ std::string describe_plan(const Model& model, const State& state, const Workspac
   std::string text;
   static const char* const faces[] = {"free", "symmetry", "fixed"};
   static const char* const shapes[] = {"trilinear", "quadratic B-spline", "GIMP"};
-  line(text, "grid: cells of %.6g, %s shape functions, %zu blocks of 64 nodes where material is",
+  line(text, "grid: cells of %.6g, %s shape functions, %zu blocks of %d nodes where material is",
        model.grid.cell_size,
        shapes[static_cast<int>(model.numerics.shape_function)],
-       workspace.slots.size());
+       workspace.slots.size(), workspace.nodes_in_use);
+  if (model.grid.axisymmetric())
+    line(text, "two dimensions: axisymmetric about y, without twist; x is the radius, masses are those of whole rings");
+  else if (model.grid.planar())
+    line(text, "two dimensions: plane strain, masses are those of a thickness of %.6g", model.grid.thickness);
   static const char* const transfers[] = {"FLIP", "FLIP with affine velocity", "APIC", "XPIC"};
   static const char* const orders[] = {"first (USF)", "last (MUSL)", "last, from the velocities as they are (USL)"};
   const Numerics& numerics = model.numerics;
