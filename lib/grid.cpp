@@ -10,6 +10,7 @@
 #include "audit.hpp"
 #include "breakdown.hpp"
 #include "error.hpp"
+#include "parallel.hpp"
 
 namespace ogive {
 namespace {
@@ -77,6 +78,9 @@ bool has_left(const Model& model, const State& state, int body, std::int64_t par
     if (!std::isfinite(x[axis]))
       throw breakdown(model, state, body, particle, "its position is not finite",
                       "the time step is too large or the material data are wrong");
+    if (axis == 0 && grid.axisymmetric() && !(x[0] > 0))
+      throw breakdown(model, state, body, particle, "its radius is not positive",
+                      "it moves by more than its radius in a step: a smaller time_step_factor may help");
     for (int side = 0; side < 2; ++side) {
       const double beyond = side == 0 ? grid.domain_min[axis] - x[axis] : x[axis] - grid.domain_max[axis];
       if (beyond <= 0) continue;
@@ -149,18 +153,18 @@ void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Aligned
     for (std::int64_t begin = 0; begin < padded; begin += most) {
       const std::int64_t end = std::min(begin + most, padded);
       Value* const piece = waiting + size * (begin % length);
-#pragma omp parallel for num_threads(workspace.threads) schedule(static) if (workspace.threads > 1)
-      for (std::int64_t i = begin; i < end; ++i)
+      for_each_in_parts(workspace.threads, begin, end, [&](std::int64_t i) {
         for (int c = 0; c < size; ++c)
           piece[size * (i - begin) + c] = values[stride * static_cast<std::int64_t>(source[i]) + c];
+      });
       // What lies a reach behind has been read by all that take it.
       const std::int64_t complete = end == padded ? padded : std::max<std::int64_t>(0, end + most - length);
       for (; written < complete; written = std::min(written + most, padded)) {
         const std::int64_t last = std::min(written + most, padded);
         const Value* const taken = waiting + size * (written % length);
-#pragma omp parallel for num_threads(workspace.threads) schedule(static) if (workspace.threads > 1)
-        for (std::int64_t i = written; i < last; ++i)
+        for_each_in_parts(workspace.threads, written, last, [&](std::int64_t i) {
           for (int c = 0; c < size; ++c) values[stride * i + c] = taken[size * (i - written) + c];
+        });
       }
     }
   };
@@ -400,6 +404,7 @@ KernelGroup describe_group(const Model& model, const State& state, Workspace& wo
     if (grid.face[2 * axis] == Face::Free) k.bound_low[axis] = std::max(k.bound_low[axis], grid.domain_min[axis]);
     if (grid.face[2 * axis + 1] == Face::Free) k.bound_high[axis] = std::min(k.bound_high[axis], grid.domain_max[axis]);
   }
+  if (grid.axisymmetric()) k.bound_low[0] = std::max(k.bound_low[0], std::numeric_limits<double>::min());
   k.bound_low[3] = -std::numeric_limits<double>::infinity();
   k.bound_high[3] = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 27; ++i) {

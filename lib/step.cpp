@@ -16,8 +16,8 @@
 #include "contact/occupied.hpp"
 #include "error.hpp"
 #include "loads/loads.hpp"
+#include "parallel.hpp"
 #include "rigid/rigid.hpp"
-#include "simd/subnormals.hpp"
 #include "surface/meeting.hpp"
 #include "time_step.hpp"
 
@@ -127,36 +127,25 @@ KernelParticles particles_of(State& state, Workspace& workspace, const GroupLink
 template <class Work>
 void for_coloured_groups(Workspace& workspace, Work&& work) {
   for (int colour = 0; colour < 4; ++colour) {
-    const std::int32_t begin = workspace.colour[colour], end = workspace.colour[colour + 1];
-#pragma omp parallel num_threads(workspace.threads) if (end - begin > 1)
-    {
-      const FlushSubnormals flush;
-#pragma omp for schedule(dynamic, 1)
-      for (std::int32_t p = begin; p < end; ++p)
-        for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
-    }
+    for_each_in_turn(workspace.threads, workspace.colour[colour], workspace.colour[colour + 1], [&](std::int64_t p) {
+      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
+    });
   }
 }
 
 // Runs work(node) over all nodes in use.
 template <class Work>
 void for_nodes(Workspace& workspace, Work&& work) {
-  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
-#pragma omp parallel num_threads(workspace.threads)
-  {
-    const FlushSubnormals flush;
-#pragma omp for schedule(static)
-    for (std::int64_t s = 0; s < slots; ++s)
-      for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) work(i);
-  }
+  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+    for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) work(i);
+  });
 }
 
 void clear_grid(Workspace& workspace) {
-  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-  for (std::int64_t s = 0; s < slots; ++s)
+  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
     std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0,
                 static_cast<std::size_t>(workspace.nodes_in_use) * sizeof(NodeRecord));
+  });
 }
 
 void clear_contacts(Workspace& workspace) {
@@ -390,28 +379,22 @@ void book_gravity(const Model& model, State& state, const Workspace& workspace, 
 // The first sum is booked here, those over particles in the next phase.
 void accelerations(State& state, Workspace& workspace, double dt) {
   const double inverse = 1.0 / dt;
-  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
-#pragma omp parallel num_threads(workspace.threads)
-  {
-    const FlushSubnormals flush;
-#pragma omp for schedule(static)
-    for (std::int64_t s = 0; s < slots; ++s) {
-      double given = 0;
-      workspace.slot_given[s] = 0;
-      if (workspace.slots[s].rigid >= 0) continue;
-      for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) {
-        NodeRecord& node = workspace.nodes[i];
-        for (int c = 0; c < 3; ++c) {
-          const double start = node.v[c], end = node.f[c];
-          given += node.v[3] * start * (end - start);
-          node.f[c] = (end - start) * inverse;
-          node.v[c] = end;
-        }
-        node.v[3] = node.f[3] = 0;
+  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+    double given = 0;
+    workspace.slot_given[s] = 0;
+    if (workspace.slots[s].rigid >= 0) return;
+    for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) {
+      NodeRecord& node = workspace.nodes[i];
+      for (int c = 0; c < 3; ++c) {
+        const double start = node.v[c], end = node.f[c];
+        given += node.v[3] * start * (end - start);
+        node.f[c] = (end - start) * inverse;
+        node.v[c] = end;
       }
-      workspace.slot_given[s] = given;
+      node.v[3] = node.f[3] = 0;
     }
-  }
+    workspace.slot_given[s] = given;
+  });
   for (const double given : workspace.slot_given) state.ledger.transfer_dissipation += given;
 }
 
@@ -420,28 +403,23 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
   const bool xpic = model.numerics.transfer == Transfer::Xpic;
   const auto update = workspace.kernels->update_particles[shape][model.numerics.affine()];
   const auto update_xpic = workspace.kernels->optional->update_particles_xpic[shape];
-  const std::int32_t count = static_cast<std::int32_t>(workspace.pencils.size());
-#pragma omp parallel num_threads(workspace.threads) if (count > 1)
-  {
-    const FlushSubnormals flush;
-#pragma omp for schedule(dynamic, 1)
-    for (std::int32_t p = 0; p < count; ++p)
-      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
-        const GroupLinks& link = workspace.links[l];
-        workspace.move_sums[l] = {};
-        if (link.rigid) continue;
-        if (xpic) {
-          const auto filter = filter_of(workspace, link);
-          NodeRecord* nodes[27];
-          std::copy(filter.begin(), filter.end(), nodes);
-          update_xpic(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), nodes,
-                      workspace.move_sums[l]);
-          continue;
-        }
-        update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
-               workspace.move_sums[l]);
+  for_each_in_turn(workspace.threads, 0, static_cast<std::int64_t>(workspace.pencils.size()), [&](std::int64_t p) {
+    for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
+      const GroupLinks& link = workspace.links[l];
+      workspace.move_sums[l] = {};
+      if (link.rigid) continue;
+      if (xpic) {
+        const auto filter = filter_of(workspace, link);
+        NodeRecord* nodes[27];
+        std::copy(filter.begin(), filter.end(), nodes);
+        update_xpic(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), nodes,
+                    workspace.move_sums[l]);
+        continue;
       }
-  }
+      update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
+             workspace.move_sums[l]);
+    }
+  });
   for (BodyState& body : state.bodies) body.totals.maximum_speed = 0;
   for (std::size_t l = 0; l < workspace.links.size(); ++l) {
     BodyState& body = state.bodies[workspace.links[l].body];
