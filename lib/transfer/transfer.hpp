@@ -460,12 +460,16 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
           const Record dX = second_of(dx), dY = second_of(dy), dZ = second_of(dz);
           double* C = particles.affine + 9 * (p + lane);
           const Record X_0 = load_three(C), Y_0 = load_three(C + 3), Z_0 = load_three(C + 6);
-          lost_affine += ((X_0 - X) * (X_0 + X - dX * group.time_step) + (Y_0 - Y) * (Y_0 + Y - dY * group.time_step) +
-                          (Z_0 - Z) * (Z_0 + Z - dZ * group.time_step)) *
-                         position[3];
+          if constexpr (is_planar<Shape>)
+            lost_affine +=
+                ((X_0 - X) * (X_0 + X - dX * group.time_step) + (Y_0 - Y) * (Y_0 + Y - dY * group.time_step)) * position[3];
+          else
+            lost_affine += ((X_0 - X) * (X_0 + X - dX * group.time_step) + (Y_0 - Y) * (Y_0 + Y - dY * group.time_step) +
+                            (Z_0 - Z) * (Z_0 + Z - dZ * group.time_step)) *
+                           position[3];
           store_three(C, X);
           store_three(C + 3, Y);
-          store_three(C + 6, Z);
+          if constexpr (!is_planar<Shape>) store_three(C + 6, Z);
         } else {
           both = gather_value<Shape>(weights[i / lane_count], lane, tile);
         }

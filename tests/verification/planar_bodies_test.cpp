@@ -85,6 +85,23 @@ TEST(PlanarBodies, SectionsHaveTheMassOfTheBodiesThatTheyStandFor) {
   EXPECT_NEAR(mass_of(plane, solid_along(OGIVE_SOLID_OGIVE_ROD, {}, {4, 20, 3}, aslant, 0.4)) / area, 1, 1e-9);
 }
 
+TEST(PlanarBodies, BodiesMayTouchButNotOverlap) {
+  for (const std::int32_t space : {OGIVE_SPACE_PLANE_STRAIN, OGIVE_SPACE_AXISYMMETRIC})
+    for (const double shift : {0.0, 2.0}) {
+      const std::string message = refusal([&] {
+        Scene scene = world(space);
+        const ogive_material_id material = scene.material("steel", steel());
+        scene.box("lower", material, {2, -4, -1}, {6, 0, 1}, 0.5, {});
+        scene.box("upper", material, {2, -shift, -1}, {6, 4 - shift, 1}, 0.5, {});
+        scene.prepare();
+      });
+      if (shift == 0)
+        EXPECT_EQ(message, "");
+      else
+        EXPECT_NE(message.find("must not overlap"), std::string::npos) << message;
+    }
+}
+
 TEST(PlanarBodies, WhatLeavesThePlaneIsRefusedByName) {
   const auto in = [](std::int32_t space, auto&& call) {
     return refusal([&] {
