@@ -1,9 +1,10 @@
 // The section of a surface with z = 0, and its particles.
 //
-// Vertices in the plane count as above it: then each triangle with vertices on both sides gives one directed segment, and the
-// segments close. A row of particles is inside between an odd and an even crossing; ends of segments count as above a row
-// in the same way. Area A = 1/2 sum (x_a y_b - x_b y_a), and the volume that the part at x > 0 makes about x = 0 is
-// V = pi sum of the integrals of x^2 dy. Particles get equal parts of thickness x A, or parts of V in proportion to x.
+// Vertices in the plane count as above it: then each triangle with vertices on both sides gives one directed segment,
+// and the segments close. A row of particles is inside between an odd and an even crossing; ends of segments count as
+// above a row in the same way. Area A = 1/2 sum (x_a y_b - x_b y_a), and the volume that the part at x > 0 makes about
+// x = 0 is V = pi sum of the integrals of x^2 dy. Particles get equal parts of thickness x A, or parts of V in
+// proportion to x.
 #include "mesh_section.hpp"
 
 #include <algorithm>
@@ -80,7 +81,8 @@ ParticleList fill_mesh_section(const std::vector<double>& vertices, const std::v
     throw Failure(kExitInput, place + ": its section with the plane z = 0 has no area" +
                                   (rule.axisymmetric ? " at x > 0" : "") + "; the mesh must be cut by the plane");
   if (!(std::abs(area) / spacing[0] / spacing[1] < most_particles && (high - low) / spacing[1] < most_rows))
-    throw Failure(kExitInput, place + ": spacing must give fewer than 2147483648 particles, got " + shortest(spacing[0]));
+    throw Failure(kExitInput,
+                  place + ": spacing must give fewer than 2147483648 particles, got " + shortest(spacing[0]));
 
   ParticleList particles;
   double sum = 0;

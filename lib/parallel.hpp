@@ -1,5 +1,5 @@
-// Loops over the threads of a world. One thread runs them by itself: a team of one costs system calls at each barrier, which
-// would be a tenth of the time of a small model.
+// Loops over the threads of a world. One thread runs them by itself: a team of one costs system calls at each barrier,
+// which would be a tenth of the time of a small model.
 #pragma once
 
 #include <cstdint>

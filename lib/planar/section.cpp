@@ -1,12 +1,14 @@
 // Sections of built-in solids.
 //
-// In the plane a section has the axes u, v of the solid that lie there, from its centre; s and t are the coordinates along
-// them. Cylinder: v its axis; rod: v from the tip on. With the spacings a, b along u and v, particles lie at
-//   rectangles   the centres of n x m equal cells, n and m the nearest whole numbers that fill the edges (of a ring: the
+// In the plane a section has the axes u, v of the solid that lie there, from its centre; s and t are the coordinates
+// along them. Cylinder: v its axis; rod: v from the tip on. With the spacings a, b along u and v, particles lie at
+//   rectangles   the centres of n x m equal cells, n and m the nearest whole numbers that fill the edges (of a ring:
+//   the
 //                wall on either side)
 //   discs, rods  s = (i + 1/2) a, t = (k + 1/2) b, where they are inside.
-// Volumes: plane strain, area x thickness / count. Axisymmetric: in proportion to the radius; their sum is that of the body of
-// revolution, by Pappus 2 pi x_c A for a section beside the axis; for one that is symmetric about it, its half's:
+// Volumes: plane strain, area x thickness / count. Axisymmetric: in proportion to the radius; their sum is that of the
+// body of revolution, by Pappus 2 pi x_c A for a section beside the axis; for one that is symmetric about it, its
+// half's:
 //   rectangle of half edges a, b about the axis: 2 pi a^2 b, less the hole; disc 4/3 pi R^3; rod the solid's own.
 #include "planar/section.hpp"
 
@@ -28,15 +30,16 @@ enum class Outline { Rectangle, Disc, Rod };
 struct Section {
   Outline outline;
   Vector3 u{}, v{};
-  double a = 0, b = 0;     // rectangle: half edges along u and v; disc: a the radius
-  double hole = 0;         // |s| (rectangle) or the radius (disc) is at least this
+  double a = 0, b = 0;  // rectangle: half edges along u and v; disc: a the radius
+  double hole = 0;      // |s| (rectangle) or the radius (disc) is at least this
   double spacing_u = 0, spacing_v = 0;
 };
 
 [[noreturn]] void refuse(const std::string& field, const std::string& expectation, double got) {
   char text[40];
   std::snprintf(text, sizeof text, "%.12g", got);
-  throw Error(ErrorKind::Argument, "solid." + field + ": must " + expectation + " in a two-dimensional model, got " + text);
+  throw Error(ErrorKind::Argument,
+              "solid." + field + ": must " + expectation + " in a two-dimensional model, got " + text);
 }
 
 bool along_z(const Vector3& direction) { return std::abs(std::abs(direction[2]) - 1) < direction_tolerance; }
@@ -51,8 +54,9 @@ Section section_of(const SolidDef& solid) {
   if (solid.shape == SolidShape::Box) {
     int across = 0;
     while (across < 3 && !along_z(axes[across])) ++across;
-    if (across == 3) refuse("axis", "turn the box so that one of its axes lies along z, which the nearest misses by",
-                            1 - std::max({std::abs(axes[0][2]), std::abs(axes[1][2]), std::abs(axes[2][2])}));
+    if (across == 3)
+      refuse("axis", "turn the box so that one of its axes lies along z, which the nearest misses by",
+             1 - std::max({std::abs(axes[0][2]), std::abs(axes[1][2]), std::abs(axes[2][2])}));
     const int first = across == 0 ? 1 : 0, second = across == 2 ? 1 : 2;
     section.outline = Outline::Rectangle;
     section.u = flattened(axes[first]);
@@ -98,7 +102,8 @@ double area_of(const Section& section, const SolidDef& solid) {
 // Of the body that the section makes by turning about x = 0.
 double revolved_volume(const Section& section, const SolidDef& solid) {
   const double x = solid.centre[0];
-  const bool v_along = std::abs(section.v[0]) < direction_tolerance, u_along = std::abs(section.u[0]) < direction_tolerance;
+  const bool v_along = std::abs(section.v[0]) < direction_tolerance,
+             u_along = std::abs(section.u[0]) < direction_tolerance;
   if (x == 0 && section.outline == Outline::Disc)
     return 4.0 / 3.0 * pi * (std::pow(section.a, 3) - std::pow(section.hole, 3));
   if (x == 0 && section.outline == Outline::Rod && v_along) return exact_volume(solid);

@@ -1,5 +1,5 @@
-// Shape functions of two-dimensional models: the product of two in the plane z = 0. Along z there is one layer of nodes, of
-// weight 1 and without slope (docs/theory.md, section 12).
+// Shape functions of two-dimensional models: the product of two in the plane z = 0. Along z there is one layer of
+// nodes, of weight 1 and without slope (docs/theory.md, section 12).
 #pragma once
 
 #include "shape/weights.hpp"

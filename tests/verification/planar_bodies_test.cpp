@@ -130,31 +130,52 @@ TEST(PlanarBodies, WhatLeavesThePlaneIsRefusedByName) {
       {in(plane, solid(solid_along(OGIVE_SOLID_OGIVE_ROD, {}, {2, 14, 3}, {0, 0, 1}, 0.5))), "axis"},
       {in(ring, solid(solid_along(OGIVE_SOLID_OGIVE_ROD, {9, 0, 0}, {2, 14, 3}, {0, 1, 0}, 0.5))), "centre[0]"},
       {in(ring, solid(solid_along(OGIVE_SOLID_SPHERE, {3, 0, 0}, {4, 0, 0}, {0, 1, 0}, 0.5))), "centre[0]"},
-      {in(plane, [&](Scene& s, ogive_material_id m) { s.numerics(1, 0.5, {0, 0, -9.81}).add("b", Scene::body(m, {}), box); }),
+      {in(plane,
+          [&](Scene& s, ogive_material_id m) {
+            s.numerics(1, 0.5, {0, 0, -9.81}).add("b", Scene::body(m, {}), box);
+          }),
        "gravity[z]"},
-      {in(ring, [&](Scene& s, ogive_material_id m) { s.numerics(1, 0.5, {1, 0, 0}).add("b", Scene::body(m, {}), box); }),
+      {in(ring,
+          [&](Scene& s, ogive_material_id m) {
+            s.numerics(1, 0.5, {1, 0, 0}).add("b", Scene::body(m, {}), box);
+          }),
        "gravity[x]"},
-      {in(plane, [&](Scene& s, ogive_material_id m) { s.wall({0, -9, 0}, {0, 1, 1}).add("b", Scene::body(m, {}), box); }),
+      {in(plane,
+          [&](Scene& s, ogive_material_id m) {
+            s.wall({0, -9, 0}, {0, 1, 1}).add("b", Scene::body(m, {}), box);
+          }),
        "wall normal[z]"},
-      {in(plane, [&](Scene& s, ogive_material_id m) {
-         s.contact(OGIVE_CONTACT_PERSISTENT, OGIVE_DETECTION_SURFACE).add("b", Scene::body(m, {}), box);
-       }),
+      {in(plane,
+          [&](Scene& s, ogive_material_id m) {
+            s.contact(OGIVE_CONTACT_PERSISTENT, OGIVE_DETECTION_SURFACE).add("b", Scene::body(m, {}), box);
+          }),
        "contact detection"},
-      {in(plane, [&](Scene& s, ogive_material_id m) {
-         const ogive_body_def def = Scene::body(m, {});
-         const double xyz[] = {1, 1, 0.5}, volume[] = {1};
-         s.check(ogive_body_add_particles(s.get(), "b", &def, 1, xyz, volume, nullptr));
-       }),
+      {in(plane,
+          [&](Scene& s, ogive_material_id m) {
+            const ogive_body_def def = Scene::body(m, {});
+            const double xyz[] = {1, 1, 0.5}, volume[] = {1};
+            s.check(ogive_body_add_particles(s.get(), "b", &def, 1, xyz, volume, nullptr));
+          }),
        "position[z]"},
-      {in(ring, [&](Scene& s, ogive_material_id m) {
-         const ogive_body_def def = Scene::body(m, {});
-         const double xyz[] = {0, 1, 0}, volume[] = {1};
-         s.check(ogive_body_add_particles(s.get(), "b", &def, 1, xyz, volume, nullptr));
-       }),
+      {in(ring,
+          [&](Scene& s, ogive_material_id m) {
+            const ogive_body_def def = Scene::body(m, {});
+            const double xyz[] = {0, 1, 0}, volume[] = {1};
+            s.check(ogive_body_add_particles(s.get(), "b", &def, 1, xyz, volume, nullptr));
+          }),
        "position[x]"},
-      {refusal([] { Scene().grid(1, {-1, 0, 0}, {5, 5, 0}, {}, OGIVE_SPACE_AXISYMMETRIC); }), "domain_min[x]"},
-      {refusal([] { Scene().grid(1, {0, 0, 0}, {5, 5, 0}, {}, 3); }), "space"},
-      {refusal([] { Scene().grid(1, {0, 0, 0}, {5, 5, 0}, {}, OGIVE_SPACE_PLANE_STRAIN, 0); }), "thickness"},
+      {refusal([] {
+         Scene().grid(1, {-1, 0, 0}, {5, 5, 0}, {}, OGIVE_SPACE_AXISYMMETRIC);
+       }),
+       "domain_min[x]"},
+      {refusal([] {
+         Scene().grid(1, {0, 0, 0}, {5, 5, 0}, {}, 3);
+       }),
+       "space"},
+      {refusal([] {
+         Scene().grid(1, {0, 0, 0}, {5, 5, 0}, {}, OGIVE_SPACE_PLANE_STRAIN, 0);
+       }),
+       "thickness"},
   };
   for (std::size_t i = 0; i < cases.size(); ++i)
     EXPECT_NE(cases[i].first.find(cases[i].second), std::string::npos)
@@ -164,8 +185,9 @@ TEST(PlanarBodies, WhatLeavesThePlaneIsRefusedByName) {
   const ogive_body_id ball = scene.add("body", Scene::body(scene.material("steel", steel()), {}), box);
   scene.prepare();
   for (const char* name : {"velocity", "position", "stress", "affine_velocity", "force"}) {
-    std::vector<double> values = std::string(name) == "force" ? std::vector<double>(scene.field(ball, "velocity").size())
-                                                              : scene.field(ball, name);
+    std::vector<double> values = std::string(name) == "force"
+                                     ? std::vector<double>(scene.field(ball, "velocity").size())
+                                     : scene.field(ball, name);
     EXPECT_EQ(refusal([&] { scene.set_field(ball, name, values); }), "") << name;
     values[std::string(name) == "stress" ? 3 : 2] = 0.25;
     EXPECT_NE(refusal([&] { scene.set_field(ball, name, values); }).find("two-dimensional"), std::string::npos) << name;
@@ -177,8 +199,9 @@ TEST(PlanarBodies, AFreeRigidBodyOfRevolutionFallsAndIsCaughtByAWall) {
   scene.numerics(OGIVE_SHAPE_QUADRATIC_BSPLINE, 0.5, {0, -10, 0}, 1, {}, OGIVE_UPDATE_STRESS_FIRST, 0.001)
       .wall({0, -5, 0}, {0, 1, 0});
   // A ring off the axis must not move inwards or outwards, whatever pushes it.
-  const ogive_body_id ring = scene.add("ring", Scene::rigid(scene.material("steel", steel()), OGIVE_FORMULATION_RIGID_FREE, {}),
-                                       Scene::solid(OGIVE_SOLID_BOX, {6, 0, 0}, {4, 4, 1}, 0.5));
+  const ogive_body_id ring =
+      scene.add("ring", Scene::rigid(scene.material("steel", steel()), OGIVE_FORMULATION_RIGID_FREE, {}),
+                Scene::solid(OGIVE_SOLID_BOX, {6, 0, 0}, {4, 4, 1}, 0.5));
   scene.prepare();
   scene.advance(0.5);
   EXPECT_NEAR(scene.result(ring).velocity[1], -5, 1e-9);
@@ -191,7 +214,8 @@ TEST(PlanarBodies, AFreeRigidBodyOfRevolutionFallsAndIsCaughtByAWall) {
   EXPECT_NEAR(scene.result(ring).lower[0], 4.25, 1e-12);
   EXPECT_EQ(scene.result(ring).angular_velocity[2], 0);
   const ogive_ledger ledger = scene.ledger();
-  EXPECT_NEAR(ledger.momentum[1], ledger.external_impulse[1] + ledger.boundary_impulse[1], 1e-9 * std::abs(ledger.external_impulse[1]));
+  EXPECT_NEAR(ledger.momentum[1], ledger.external_impulse[1] + ledger.boundary_impulse[1],
+              1e-9 * std::abs(ledger.external_impulse[1]));
 }
 
 TEST(PlanarBodies, ARigidPunchDrivesABarAndAFreeBlockTurnsInItsPlane) {
@@ -202,7 +226,8 @@ TEST(PlanarBodies, ARigidPunchDrivesABarAndAFreeBlockTurnsInItsPlane) {
             Scene::solid(OGIVE_SOLID_BOX, {-6, 0, 0}, {4, 4, 1}, 0.5));
   const ogive_body_id block = scene.add("block", Scene::rigid(material, OGIVE_FORMULATION_RIGID_FREE, {}),
                                         Scene::solid(OGIVE_SOLID_BOX, {0, 3, 0}, {6, 8, 1}, 0.5));
-  const ogive_body_id bar = scene.add("bar", Scene::body(material, {}), Scene::solid(OGIVE_SOLID_BOX, {8, 3, 0}, {9, 4, 1}, 0.5));
+  const ogive_body_id bar =
+      scene.add("bar", Scene::body(material, {}), Scene::solid(OGIVE_SOLID_BOX, {8, 3, 0}, {9, 4, 1}, 0.5));
   scene.prepare();
   scene.advance(0.2);
   const ogive_body_result turned = scene.result(block);
@@ -246,14 +271,17 @@ TEST(PlanarBodies, ATractionGivesARingItsForce) {
 }
 
 TEST(PlanarBodies, AHollowCylinderUnderRadialLoadKeepsItsFormOfEquilibrium) {
-  // Lame's tube: inner pressure p as a radial force on the innermost layer, brought up slowly and damped by the transfer; the
-  // outer surface moves by u = 2 p r_i^2 r_o (1 - nu^2) / (E (r_o^2 - r_i^2)) in plane strain.
+  // Lame's tube: inner pressure p as a radial force on the innermost layer, brought up slowly and damped by the
+  // transfer; the outer surface moves by u = 2 p r_i^2 r_o (1 - nu^2) / (E (r_o^2 - r_i^2)) in plane strain.
   const double E = 1000, nu = 0.3, inner = 6, outer = 12, pressure = 1, length = 3;
   Scene scene;
-  scene.grid(0.5, {0, 0, 0}, {15, length, 0}, {0, 0, OGIVE_FACE_SYMMETRY, OGIVE_FACE_SYMMETRY, 0, 0}, OGIVE_SPACE_AXISYMMETRIC)
+  scene
+      .grid(0.5, {0, 0, 0}, {15, length, 0}, {0, 0, OGIVE_FACE_SYMMETRY, OGIVE_FACE_SYMMETRY, 0, 0},
+            OGIVE_SPACE_AXISYMMETRIC)
       .numerics(OGIVE_SHAPE_GIMP, 0.5, {}, 1, OGIVE_TRANSFER_APIC);
-  const ogive_body_id tube = scene.add("tube", Scene::body(scene.material("soft", elastic(1e-3, E, nu)), {}),
-                                       solid_along(OGIVE_SOLID_CYLINDER, {0, length / 2, 0}, {outer, length, inner}, {0, 1, 0}, 0.25));
+  const ogive_body_id tube =
+      scene.add("tube", Scene::body(scene.material("soft", elastic(1e-3, E, nu)), {}),
+                solid_along(OGIVE_SOLID_CYLINDER, {0, length / 2, 0}, {outer, length, inner}, {0, 1, 0}, 0.25));
   ogive_load_def load;
   ogive_load_def_init(&load, sizeof load);
   load.kind = OGIVE_LOAD_TRACTION;

@@ -49,8 +49,8 @@ class PlanarShape : public testing::TestWithParam<std::int32_t> {};
 
 }  // namespace
 
-// A velocity field that is linear in r and y is carried without error by particles with affine velocities, so that one step
-// must give the deformation gradient of the law's second-order update to round-off, up to the axis.
+// A velocity field that is linear in r and y is carried without error by particles with affine velocities, so that one
+// step must give the deformation gradient of the law's second-order update to round-off, up to the axis.
 TEST_P(PlanarShape, UniformExpansionOfACylinderGivesTheExactHoopStrain) {
   ogive_material_def rubber = elastic(1e-3, 10, 0.4);
   rubber.strength = OGIVE_STRENGTH_NEO_HOOKEAN;
@@ -79,8 +79,7 @@ TEST_P(PlanarShape, UniformExpansionOfACylinderGivesTheExactHoopStrain) {
   for (std::size_t p = 0; p < J.size(); ++p) {
     worst = std::max({worst, std::abs(F[9 * p] / stretch(radial) - 1), std::abs(F[9 * p + 4] / stretch(axial) - 1),
                       std::abs(F[9 * p + 8] / stretch(radial) - 1)});
-    worst_volume = std::max(worst_volume,
-                            std::abs(J[p] / (stretch(radial) * stretch(radial) * stretch(axial)) - 1));
+    worst_volume = std::max(worst_volume, std::abs(J[p] / (stretch(radial) * stretch(radial) * stretch(axial)) - 1));
   }
   measured("time_step", dt);
   measured("error_of_F", worst);
@@ -107,8 +106,9 @@ TEST(Planar, ALongCylinderBreathesAtItsFrequency) {
   std::vector<double> errors;
   for (const double cell : {2.0, 1.0, 0.5, 0.25}) {
     Scene scene;
-    scene.grid(cell, {0, 0, 0}, {12, 4 * cell, 0}, {0, 0, OGIVE_FACE_SYMMETRY, OGIVE_FACE_SYMMETRY, 0, 0},
-               OGIVE_SPACE_AXISYMMETRIC)
+    scene
+        .grid(cell, {0, 0, 0}, {12, 4 * cell, 0}, {0, 0, OGIVE_FACE_SYMMETRY, OGIVE_FACE_SYMMETRY, 0, 0},
+              OGIVE_SPACE_AXISYMMETRIC)
         .numerics(OGIVE_SHAPE_QUADRATIC_BSPLINE, 0.2);
     const ogive_body_id body = scene.add("cylinder", Scene::body(scene.material("steel", steel()), {}),
                                          revolved(OGIVE_SOLID_CYLINDER, 2 * cell, {radius, 4 * cell, 0}, cell / 2));
@@ -136,14 +136,15 @@ TEST(Planar, ALongCylinderBreathesAtItsFrequency) {
   EXPECT_GE(order, 0.9);
 }
 
-// A slab between two mirrors does not strain across it: with the same particles in its plane, plane strain is the same model.
+// A slab between two mirrors does not strain across it: with the same particles in its plane, plane strain is the same
+// model.
 TEST(Planar, PlaneStrainIsASlabBetweenMirrors) {
   const double cell = 1, thickness = 3 * cell;
   const auto build = [&](bool planar) {
     Scene scene;
-    scene.grid(cell, {-10, -10, 0}, {10, 10, thickness},
-               {0, 0, 0, 0, OGIVE_FACE_SYMMETRY, OGIVE_FACE_SYMMETRY},
-               planar ? OGIVE_SPACE_PLANE_STRAIN : OGIVE_SPACE_THREE_DIMENSIONAL, thickness)
+    scene
+        .grid(cell, {-10, -10, 0}, {10, 10, thickness}, {0, 0, 0, 0, OGIVE_FACE_SYMMETRY, OGIVE_FACE_SYMMETRY},
+              planar ? OGIVE_SPACE_PLANE_STRAIN : OGIVE_SPACE_THREE_DIMENSIONAL, thickness)
         .numerics(OGIVE_SHAPE_QUADRATIC_BSPLINE, 0.4)
         .contact(OGIVE_CONTACT_HUANG_SECOND, OGIVE_DETECTION_GAP, 0.2);
     const ogive_material_id hard = scene.material("steel", steel());
@@ -178,7 +179,8 @@ TEST(Planar, PlaneStrainIsASlabBetweenMirrors) {
   EXPECT_GT(plane.result({1}).failed_particles, 5);
   measured("failed_particles", static_cast<double>(plane.result({1}).failed_particles));
   for (std::int32_t b = 0; b < 2; ++b)
-    for (const auto& [field, components] : {std::pair{"position", 3}, std::pair{"velocity", 3}, std::pair{"stress", 6}}) {
+    for (const auto& [field, components] :
+         {std::pair{"position", 3}, std::pair{"velocity", 3}, std::pair{"stress", 6}}) {
       const std::vector<double> a = plane.field({b}, field), all = slab.field({b}, field);
       double worst = 0;
       for (std::size_t i = 0; i < same[b].size(); ++i)
@@ -189,8 +191,7 @@ TEST(Planar, PlaneStrainIsASlabBetweenMirrors) {
       EXPECT_LE(worst, 1e-11) << field;
     }
   EXPECT_NEAR(plane.ledger().total / slab.ledger().total, 1, 1e-12);
-  for (int c = 0; c < 2; ++c)
-    EXPECT_NEAR(plane.result({1}).momentum[c] / slab.result({1}).momentum[c], 1, 1e-11);
+  for (int c = 0; c < 2; ++c) EXPECT_NEAR(plane.result({1}).momentum[c] / slab.result({1}).momentum[c], 1, 1e-11);
 }
 
 namespace {
@@ -235,13 +236,14 @@ TEST_P(PlanarConservation, ImpactKeepsAxialMomentumAndBooksTheRadial) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, PlanarConservation,
-                         testing::Combine(testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
-                                          testing::Values(OGIVE_TRANSFER_FLIP, OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_TRANSFER_APIC,
-                                                          OGIVE_TRANSFER_XPIC),
-                                          testing::Values(OGIVE_UPDATE_STRESS_FIRST, OGIVE_UPDATE_STRESS_LAST),
-                                          testing::Values(OGIVE_CONTACT_HUANG_SECOND), testing::Values(OGIVE_NORMAL_AVERAGE)),
-                         choice_name);
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, PlanarConservation,
+    testing::Combine(testing::Values(OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE, OGIVE_SHAPE_GIMP),
+                     testing::Values(OGIVE_TRANSFER_FLIP, OGIVE_TRANSFER_AFFINE_FLIP, OGIVE_TRANSFER_APIC,
+                                     OGIVE_TRANSFER_XPIC),
+                     testing::Values(OGIVE_UPDATE_STRESS_FIRST, OGIVE_UPDATE_STRESS_LAST),
+                     testing::Values(OGIVE_CONTACT_HUANG_SECOND), testing::Values(OGIVE_NORMAL_AVERAGE)),
+    choice_name);
 INSTANTIATE_TEST_SUITE_P(Contact, PlanarConservation,
                          testing::Combine(testing::Values(OGIVE_SHAPE_QUADRATIC_BSPLINE),
                                           testing::Values(OGIVE_TRANSFER_AFFINE_FLIP),
@@ -249,13 +251,15 @@ INSTANTIATE_TEST_SUITE_P(Contact, PlanarConservation,
                                           testing::Range(0, 9), testing::Values(OGIVE_NORMAL_VOLUME_GRADIENT)),
                          choice_name);
 INSTANTIATE_TEST_SUITE_P(Normals, PlanarConservation,
-                         testing::Combine(testing::Values(OGIVE_SHAPE_GIMP), testing::Values(OGIVE_TRANSFER_AFFINE_FLIP),
+                         testing::Combine(testing::Values(OGIVE_SHAPE_GIMP),
+                                          testing::Values(OGIVE_TRANSFER_AFFINE_FLIP),
                                           testing::Values(OGIVE_UPDATE_STRESS_FIRST),
                                           testing::Values(OGIVE_CONTACT_PERSISTENT), testing::Range(0, 5)),
                          choice_name);
 
 TEST(Planar, AnElasticImpactKeepsItsEnergy) {
-  RevolvedImpact impact{.method = OGIVE_CONTACT_PERSISTENT, .transfer = OGIVE_TRANSFER_FLIP, .elastic = true, .cell = 0.5, .speed = 40};
+  RevolvedImpact impact{
+      .method = OGIVE_CONTACT_PERSISTENT, .transfer = OGIVE_TRANSFER_FLIP, .elastic = true, .cell = 0.5, .speed = 40};
   Scene scene = impact.build();
   scene.advance(0.01);
   measured("ball_velocity", scene.result({0}).velocity[1]);
