@@ -27,8 +27,9 @@ constexpr ElementType element_type() {
   }
 }
 
-// Grows by one with each set of arrays that is added. 2: loads, forces of the host, sums over pairs.
-constexpr std::int32_t save_version = 2;
+// Grows by one with each set of arrays that is added. 2: loads, forces of the host, sums over pairs. 3: total Lagrangian
+// bodies.
+constexpr std::int32_t save_version = 3;
 
 class Archive {
  public:

@@ -79,6 +79,10 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
       audit.first_moment[c] += part.first_moment[c];
     }
   }
+  if (body.lagrangian) {
+    audit.kinetic = body.reference.kinetic;
+    audit.angular_momentum = body.reference.angular_momentum;
+  }
   return audit;
 }
 

@@ -88,7 +88,8 @@ class Finder {
       field.body = slot.field;
       field.rigid = slot.rigid;
       field.fixed = slot.rigid >= 0 && workspace_.rigid[slot.rigid].prescribed;
-      if (slot.rigid >= 0 && !field.fixed) at.coupled = true;
+      field.lagrangian = slot.lagrangian;
+      if (slot.guided() && !field.fixed) at.coupled = true;
       field.mass = record.v[3];
       field.fill = sums.volume / cell_volume;
       const double inverse_density = 1.0 / model_.material_of(slot.field).density;
@@ -147,7 +148,7 @@ class Finder {
           if (std::min(first.mass, second.mass) < smallest_mass_share * (first.mass + second.mass)) continue;
           if (!normal_of(block, rule, at, first, second, pair.normal)) continue;
         }
-        pair.strains = first.rigid < 0 || (!wall && second.rigid < 0);
+        pair.strains = first.by_grid() || second.by_grid();
         const ShapeFunction shape = model_.numerics.shape_function;
         const double h = model_.grid.cell_size;
         if (pair.method->needs_normal && rule.detection == Detection::Gap) {
@@ -319,7 +320,7 @@ double sweep(BlockContacts& contacts, const ContactNode& node, const std::vector
   }
   for (int f = 0; f < node.fields; ++f) {
     ContactField& field = fields[f];
-    if (!field.fixed && field.rigid < 0) add(field.velocity, times(1 / field.mass, field.change));
+    if (!field.fixed && field.rigid < 0 && !field.lagrangian) add(field.velocity, times(1 / field.mass, field.change));
   }
   return worst;
 }
@@ -351,10 +352,12 @@ void sum_up(BlockContacts& contacts, ContactNode& node, const std::vector<RigidM
   }
 }
 
-// The nodes of free rigid bodies.
+// The nodes of free rigid and total Lagrangian bodies.
 class CoupledNodes {
  public:
-  CoupledNodes(Workspace& workspace, std::vector<RigidMotion>& rigid) : workspace_(workspace), rigid_(rigid) {}
+  // Impulses on total Lagrangian bodies are kept where `moves`.
+  CoupledNodes(Workspace& workspace, std::vector<RigidMotion>& rigid, bool moves)
+      : workspace_(workspace), rigid_(rigid), moves_(moves) {}
 
   void solve() {
     for (std::size_t i = 0; i < workspace_.mixed.size(); ++i)
@@ -382,6 +385,7 @@ class CoupledNodes {
       for (const auto& [contacts, node] : nodes_)
         for_free_rigid(*contacts, *node,
                        [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(node->place); });
+      push_lagrangian();
       if (worst <= coupled_tolerance * scale) break;
     }
     for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node, rigid_);
@@ -392,6 +396,16 @@ class CoupledNodes {
   static void for_free_rigid(BlockContacts& contacts, const ContactNode& node, Work&& work) {
     for (int f = node.first_field; f < node.first_field + node.fields; ++f)
       if (contacts.fields[f].rigid >= 0 && !contacts.fields[f].fixed) work(contacts.fields[f]);
+  }
+
+  void push_lagrangian() {
+    LagrangianContact& contact = workspace_.lagrangian_contact;
+    if (contact.empty()) return;
+    for (LagrangianContact::Field& field : contact.fields)
+      field.impulse = workspace_.block_contacts[field.block].fields[field.field].change;
+    contact.apply(workspace_, moves_ ? &contact.total : nullptr);
+    for (const LagrangianContact::Field& field : contact.fields)
+      add(workspace_.block_contacts[field.block].fields[field.field].velocity, field.change);
   }
 
   void share_masses() {
@@ -434,6 +448,7 @@ class CoupledNodes {
 
   Workspace& workspace_;
   std::vector<RigidMotion>& rigid_;
+  const bool moves_;
   std::vector<std::pair<BlockContacts*, ContactNode*>> nodes_;
 };
 
@@ -452,7 +467,7 @@ double* velocity_record(Workspace& workspace, const ContactField& field, const C
 
 // Loads velocities, decides, and solves all nodes.
 void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Phase& phase) {
-  bool any_free = false;
+  bool any_free = !workspace.lagrangian_contact.empty();
   for (const RigidMotion& body : rigid) any_free = any_free || !body.prescribed;
   for_blocks(workspace, [&](BlockContacts& contacts) {
     contacts.friction_dissipation = contacts.contact_work = 0;
@@ -478,7 +493,7 @@ void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Ph
       sum_up(contacts, node, rigid);
     }
   });
-  if (any_free) CoupledNodes(workspace, rigid).solve();
+  if (any_free) CoupledNodes(workspace, rigid, phase.use != StartUse::Strain).solve();
 }
 
 // Momentum that walls and rigid bodies take, and the forces on bodies.
@@ -601,6 +616,7 @@ void find_contacts(const Model& model, const State& state, Workspace& workspace)
   if (failure) std::rethrow_exception(failure);
   for (const MixedBlock& block : workspace.mixed)
     for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) workspace.slot_contact_force[s] = {};
+  workspace.lagrangian_contact.find(model, state, workspace);
 }
 
 void solve_node(BlockContacts& contacts, ContactNode& node, const std::vector<RigidMotion>& rigid) {
@@ -651,13 +667,19 @@ void start_contact(State& state, Workspace& workspace, double dt, StartUse use) 
         if (field.slot < 0) continue;
         double* v = velocity_record(workspace, field, node, false);
         for (int c = 0; c < 3; ++c) v[c] = field.velocity[c];
-        if (field.rigid >= 0) continue;
+        if (!field.by_grid()) continue;
         field.kept = times(-1 / field.mass, field.kept);
         field.returned = times(-1 / field.mass, field.impulse);
       }
     }
   });
   if (use == StartUse::Strain) return;
+  if (workspace.contact_needs.start_kept && !workspace.lagrangian_contact.empty()) {
+    LagrangianContact& contact = workspace.lagrangian_contact;
+    for (LagrangianContact::Field& field : contact.fields)
+      field.impulse = workspace.block_contacts[field.block].fields[field.field].kept;
+    contact.apply(workspace, &contact.kept);
+  }
   for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
     for (ContactNode& node : workspace.block_contacts[i].nodes)
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
@@ -678,7 +700,7 @@ void return_start(Workspace& workspace) {
     for (const ContactNode& node : contacts.nodes)
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         const ContactField& field = contacts.fields[f];
-        if (field.slot < 0 || field.rigid >= 0) continue;
+        if (!field.by_grid()) continue;
         double* v = velocity_record(workspace, field, node, false);
         for (int c = 0; c < 3; ++c) v[c] += field.returned[c];
       }
@@ -722,7 +744,7 @@ void book_kept_start(State& state, const Workspace& workspace) {
     for (const ContactNode& node : workspace.block_contacts[i].nodes)
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         const ContactField& field = workspace.block_contacts[i].fields[f];
-        if (field.slot < 0 || field.rigid >= 0) continue;
+        if (!field.by_grid()) continue;
         const NodeRecord& record = workspace.nodes[static_cast<std::size_t>(field.slot) * block_nodes + node.node];
         for (int c = 0; c < 3; ++c) given += record.v[3] * field.kept[c] * (record.f[c] - record.v[c]);
       }

@@ -31,6 +31,7 @@ struct ContactField {
   std::int32_t slot = -1;    // of the grid; -1: a wall
   std::int32_t body = -1;    // its velocity field; walls: -1 - index of the wall
   std::int32_t rigid = -1;   // index in Workspace::rigid; -1: deformable, or a wall
+  bool lagrangian = false;   // of a total Lagrangian body
   std::int32_t acting = 0;   // pairs that hold it in this phase
   bool fixed = false;        // infinite mass: walls and prescribed motion
   double mass = 0;           // as mapped
@@ -44,6 +45,9 @@ struct ContactField {
   Vector3 returned{};  // velocity that the first phase took and that goes back before the increment of the particles
   Vector3 kept{}, kept_couple{};  // likewise, but it never reaches the particles
   Vector3 impulse{}, couple{};  // on it in this phase; the couple of impulses that act beside the node, on rigid bodies
+
+  // It moves with the common grid, from which it has its strain and its change of motion.
+  bool by_grid() const { return slot >= 0 && rigid < 0 && !lagrangian; }
 };
 
 struct ContactPair {
@@ -51,8 +55,8 @@ struct ContactPair {
   const ContactMethodDef* method = nullptr;
   Vector3 normal{};             // unit, out of a; zero where the method asks for none
   Vector3 beside{};             // from the node to the surface where the bodies meet; only where one of them is rigid
-  bool strains = true;          // one of the bodies deforms
-  double gap = 0;               // length > 0 that two bodies that do not deform may still approach
+  bool strains = true;          // one of the bodies has its strain from the common grid
+  double gap = 0;               // length > 0 that a pair without such a body may still approach
   double friction = 0;
   bool pressed = false;         // its normal impulse pushed in the last step
   Vector3 mapped{}, adjusted{}; // v_a - v_b before and after the first phase of this step
@@ -71,7 +75,7 @@ struct ContactNode {
   std::array<std::int32_t, 3> index{};  // of the node in the grid, from domain_min
   Vector3 place{};
   std::int32_t first_field = 0, fields = 0, first_pair = 0, pairs = 0;
-  bool coupled = false;       // a free rigid body is here, which couples it to other nodes
+  bool coupled = false;       // a free rigid or total Lagrangian body is here, which couples it to other nodes
 };
 
 // All of one mixed block.
