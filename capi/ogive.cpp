@@ -1306,9 +1306,11 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     full.contact_work = state.ledger.contact_work;
     full.boundary_work = state.ledger.boundary_work;
     full.external_work = state.ledger.external_work;
+    full.contact_dissipation = state.ledger.contact_dissipation;
     full.prescribed_work = state.ledger.prescribed_work;
     full.initial_total = state.ledger.initial_total;
     full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation +
+                 full.contact_dissipation +
                  full.transfer_dissipation - full.external_work - full.prescribed_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;

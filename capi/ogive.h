@@ -522,7 +522,7 @@ OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_prog
 
 /* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
  *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation
- *            + transfer_dissipation - external_work - prescribed_work
+ *            + transfer_dissipation + contact_dissipation - external_work - prescribed_work
  *   residual = total - initial_total; what no term accounts for
  * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
  * Particles lose less than that (they carry motion that the grid does not see), so these are indicators and part of no
@@ -559,6 +559,9 @@ typedef struct ogive_ledger {
   double angular_momentum[3];  /* [M L2/T] in the domain, about the origin, with that of affine velocities */
   double contact_couple[3];    /* [M L2/T] given to free rigid bodies because contact acts on them at the surface, and on a
                                   deformable body at the node: angular_momentum less this is what contact conserves */
+  double contact_dissipation;  /* kinetic energy that contact took, beside friction, where total Lagrangian bodies meet each other,
+                                  rigid bodies or walls: the impact of the layer of nodes that meets. There it is exactly
+                                  known; what contact takes from other bodies is in the residual */
 } ogive_ledger;
 /* After ogive_world_prepare; a pass over all particles. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);

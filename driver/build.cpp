@@ -102,6 +102,7 @@ class Builder {
     assign(def.failure_strain, material.failure_strain);
     assign(def.viscosity_linear, material.viscosity_linear);
     assign(def.viscosity_quadratic, material.viscosity_quadratic);
+    assign(def.isotropic_fraction, material.isotropic_fraction);
     ogive_material_id id{-1};
     require(ogive_material_add(world_.get(), material.name.c_str(), &def, &id), "materials." + material.name);
     material_ids_.push_back(id);
@@ -118,6 +119,8 @@ class Builder {
     assign(def.angular_velocity, body.angular_velocity);
     assign(def.angular_centre, body.angular_centre);
     assign(def.formulation, body.formulation);
+    assign(def.distortion_limit, body.distortion_limit);
+    assign(def.when_distorted, body.when_distorted);
     ogive_body_id id{-1};
     if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
       ogive_solid_def shape;

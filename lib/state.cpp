@@ -219,6 +219,7 @@ void State::exchange(const Model& model, Archive& a) {
     exchange_pairs(*this, a);
     exchange_contact_memory(*this, a);
   }
+  if (a.version() >= 3) a.value("state/ledger/contact_dissipation", ledger.contact_dissipation);
 
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     BodyState& body = bodies[b];

@@ -114,7 +114,7 @@ struct BodyState {
 // Momentum and energy that no particle carries; see ogive_ledger.
 struct Ledger {
   double friction_dissipation = 0, transfer_dissipation = 0, contact_work = 0, boundary_work = 0, external_work = 0,
-         prescribed_work = 0;
+         prescribed_work = 0, contact_dissipation = 0;
   Vector3 boundary_impulse{}, external_impulse{}, contact_couple{};
   double initial_total = 0;
 };

@@ -43,6 +43,9 @@ constexpr int most_sweeps = 50;           // of a node
 constexpr double sweep_tolerance = 1e-10;
 constexpr int most_coupled_sweeps = 300;  // of the nodes of free rigid bodies
 constexpr double coupled_tolerance = 1e-11;
+// Of the nodes of total Lagrangian bodies, where what is missing falls ever more slowly: docs/decisions.md.
+constexpr int most_lagrangian_sweeps = 20;
+constexpr double lagrangian_tolerance = 1e-3;
 
 // ------------------------------------------------------------------------------------------------------------- finding
 
@@ -166,10 +169,22 @@ class Finder {
                                     : 0.5 * (surface_distance(shape, second.fill) - surface_distance(shape, first.fill));
           pair.beside = times(along * h, pair.normal);
         }
+        if (!pair.strains && (first.lagrangian || second.lagrangian)) {
+          pair.booked = true;
+          pair.mapped = minus(mapped_velocity(first, pair, at), mapped_velocity(second, pair, at));
+        }
         if (pair.method->remembers) pair.pressed = remembers(state_.contact_memory, at.index, first.body, second.body);
         contacts.pairs.push_back(pair);
         ++at.pairs;
       }
+  }
+
+  // Before the step's forces.
+  Vector3 mapped_velocity(const ContactField& field, const ContactPair& pair, const ContactNode& at) const {
+    if (field.slot < 0) return {};
+    const double* v = workspace_.nodes[static_cast<std::size_t>(field.slot) * block_nodes + at.node].v;
+    const Vector3 velocity = {v[0], v[1], v[2]};
+    return field.rigid < 0 ? velocity : plus(velocity, cross(workspace_.rigid[field.rigid].spin, pair.beside));
   }
 
   bool normal_of(const MixedBlock& block, const ContactRule& rule, const ContactNode& at, const ContactField& first,
@@ -349,6 +364,11 @@ void sum_up(BlockContacts& contacts, ContactNode& node, const std::vector<RigidM
     pair.contact_work = (heat ? 0 : tangential_work) - pair.normal_impulse * dot(pair.normal, mean);
     contacts.friction_dissipation += pair.friction_dissipation;
     contacts.contact_work += pair.contact_work;
+    // Central differences: an impulse at a time does the work of the mean of the velocities half a step before and after it.
+    if (pair.booked) {
+      const Vector3 about = times(0.5, plus(pair.mapped, relative_velocity(a, b, pair, rigid)));
+      contacts.contact_dissipation -= dot(impulse, about) + pair.friction_dissipation;
+    }
   }
 }
 
@@ -366,7 +386,12 @@ class CoupledNodes {
     if (nodes_.empty()) return;
     share_masses();
     std::vector<Vector3> impulse(rigid_.size()), moment(rigid_.size());
-    for (int pass = 0; pass < most_coupled_sweeps; ++pass) {
+    const bool lagrangian = !workspace_.lagrangian_contact.empty();
+    bool free_rigid = false;
+    for (const RigidMotion& body : rigid_) free_rigid = free_rigid || !body.prescribed;
+    const int most = free_rigid ? most_coupled_sweeps : most_lagrangian_sweeps;
+    const double tolerance = lagrangian ? lagrangian_tolerance : coupled_tolerance;
+    for (int pass = 0; pass < most; ++pass) {
       double worst = 0, scale = 0;
       std::fill(impulse.begin(), impulse.end(), Vector3{});
       std::fill(moment.begin(), moment.end(), Vector3{});
@@ -386,7 +411,7 @@ class CoupledNodes {
         for_free_rigid(*contacts, *node,
                        [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(node->place); });
       push_lagrangian();
-      if (worst <= coupled_tolerance * scale) break;
+      if (worst <= tolerance * scale) break;
     }
     for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node, rigid_);
   }
@@ -470,7 +495,7 @@ void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Ph
   bool any_free = !workspace.lagrangian_contact.empty();
   for (const RigidMotion& body : rigid) any_free = any_free || !body.prescribed;
   for_blocks(workspace, [&](BlockContacts& contacts) {
-    contacts.friction_dissipation = contacts.contact_work = 0;
+    contacts.friction_dissipation = contacts.contact_work = contacts.contact_dissipation = 0;
     for (ContactNode& node : contacts.nodes) {
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         ContactField& field = contacts.fields[f];
@@ -561,6 +586,7 @@ void book_energies(State& state, const Workspace& workspace) {
   for (std::size_t i = 0; i < workspace.mixed.size(); ++i) {
     state.ledger.friction_dissipation += workspace.block_contacts[i].friction_dissipation;
     state.ledger.contact_work += workspace.block_contacts[i].contact_work;
+    state.ledger.contact_dissipation += workspace.block_contacts[i].contact_dissipation;
   }
 }
 
@@ -649,7 +675,7 @@ void start_contact(State& state, Workspace& workspace, double dt, StartUse use) 
       for (int f = 0; f < node.fields; ++f) fields[f].kept = fields[f].impulse = fields[f].couple = {};
       for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
         ContactPair& pair = contacts.pairs[p];
-        pair.mapped = pair.found;
+        if (!pair.booked) pair.mapped = pair.found;
         ContactField &a = fields[pair.a], &b = fields[pair.b];
         pair.adjusted = relative_velocity(a, b, pair, rigid);
         if (pair.constraint.hold == Hold::Nothing) continue;

@@ -58,6 +58,7 @@ struct ContactPair {
   bool strains = true;          // one of the bodies has its strain from the common grid
   double gap = 0;               // length > 0 that a pair without such a body may still approach
   double friction = 0;
+  bool booked = false;          // what it takes is exactly known: it joins a total Lagrangian body with no body of the grid
   bool pressed = false;         // its normal impulse pushed in the last step
   Vector3 mapped{}, adjusted{}; // v_a - v_b before and after the first phase of this step
   double start_push = 0;        // normal impulse of the first phase, where it reaches the particles: it bears friction too
@@ -83,7 +84,7 @@ struct BlockContacts {
   std::vector<ContactField> fields;
   std::vector<ContactPair> pairs;
   std::vector<ContactNode> nodes;
-  double friction_dissipation = 0, contact_work = 0;
+  double friction_dissipation = 0, contact_work = 0, contact_dissipation = 0;
 
   void clear() {
     fields.clear();
