@@ -4,20 +4,16 @@
 #include "lagrangian/reference_grid.hpp"
 
 namespace ogive {
-namespace {
-
-Vector3 mirrored(const Vector3& v, std::int32_t signs) {
-  return {signs & 1 ? -v[0] : v[0], signs & 2 ? -v[1] : v[1], signs & 4 ? -v[2] : v[2]};
-}
-
-}  // namespace
 
 void LagrangianContact::find(const Model& model, const State& state, Workspace& workspace) {
   fields.clear();
   particles.clear();
   field_weights.clear();
   node_weights.clear();
-  for (const std::int64_t node : touched) total[node] = kept[node] = push[node] = {};
+  for (const std::int64_t node : touched) {
+    total[node] = kept[node] = {};
+    push[node] = {};
+  }
   touched.clear();
   if (!workspace.reference_grid) return;
   const Workspace& reference = *workspace.reference_grid;
@@ -74,72 +70,75 @@ void LagrangianContact::find(const Model& model, const State& state, Workspace& 
       const std::size_t before = field_weights.size();
       for_nodes_of(model, link, &copy.position[4 * p], [&](std::int64_t node, double weight, const Vector3&) {
         const std::int64_t r = record(node);
-        if (r >= 0 && at[r] >= 0) field_weights.push_back({at[r], weight, mirrored[r]});
+        if (r >= 0 && at[r] >= 0)
+          field_weights.push_back({at[r], weight * copy.position[4 * p + 3] / fields[at[r]].mass, mirrored[r]});
       });
       if (field_weights.size() == before) continue;
       for_reference_nodes(model, state, reference, link.body, copy.number[p], [&](const NodeWeight& at_node) {
         node_weights.push_back(at_node);
-        Vector3& mark = push[at_node.node];
-        if (mark[0] == 0) touched.push_back(at_node.node);
-        mark[0] = 1;
+        double& mark = push[at_node.node].c[3];
+        if (mark == 0) touched.push_back(at_node.node);
+        mark = 1;
       });
-      particles.push_back({copy.position[4 * p + 3], static_cast<std::int32_t>(field_weights.size()),
-                           static_cast<std::int32_t>(node_weights.size())});
+      particles.push_back({static_cast<std::int32_t>(field_weights.size()), static_cast<std::int32_t>(node_weights.size())});
     }
   }
   for (const std::int64_t node : touched) push[node] = {};
 }
 
-template <class VelocityOf>
-void LagrangianContact::gather(VelocityOf&& velocity_of) {
-  for (Field& field : fields) field.change = {};
+void LagrangianContact::gather() {
+  at_field.assign(fields.size(), {});
   std::int32_t f = 0, n = 0;
   for (const Particle& particle : particles) {
-    Vector3 v{};
-    for (; n < particle.nodes_end; ++n)
-      add(v, times(node_weights[n].weight, ogive::mirrored(velocity_of(node_weights[n].node), node_weights[n].mirrored)));
+    Record v;
+    for (; n < particle.nodes_end; ++n) {
+      const NodeWeight& at_node = node_weights[n];
+      const Record& node = push[at_node.node];
+      v.add(at_node.weight, at_node.mirrored ? node.mirrored(at_node.mirrored) : node);
+    }
     for (; f < particle.fields_end; ++f) {
-      Field& field = fields[field_weights[f].node];
-      add(field.change,
-          times(particle.mass * field_weights[f].weight / field.mass, ogive::mirrored(v, field_weights[f].mirrored)));
+      const NodeWeight& to = field_weights[f];
+      at_field[to.node].add(to.weight, to.mirrored ? v.mirrored(to.mirrored) : v);
     }
   }
-  for (Field& field : fields)
-    for (int c = 0; c < 3; ++c)
-      if (field.held >> c & 1) field.change[c] = 0;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    for (int c = 0; c < 3; ++c) fields[i].change[c] = fields[i].held >> c & 1 ? 0 : at_field[i].c[c];
+  for (const std::int64_t node : touched) push[node] = {};
 }
 
 void LagrangianContact::apply(const Workspace& workspace, std::vector<Vector3>* sum) {
+  at_field.resize(fields.size());
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    at_field[i] = {{fields[i].impulse[0], fields[i].impulse[1], fields[i].impulse[2], 0}};
   std::int32_t f = 0, n = 0;
   for (const Particle& particle : particles) {
-    Vector3 impulse{};
+    Record impulse;
     for (; f < particle.fields_end; ++f) {
-      const Field& field = fields[field_weights[f].node];
-      add(impulse, times(particle.mass * field_weights[f].weight / field.mass,
-                         ogive::mirrored(field.impulse, field_weights[f].mirrored)));
+      const NodeWeight& from = field_weights[f];
+      impulse.add(from.weight, from.mirrored ? at_field[from.node].mirrored(from.mirrored) : at_field[from.node]);
     }
-    for (; n < particle.nodes_end; ++n)
-      add(push[node_weights[n].node],
-          times(node_weights[n].weight, ogive::mirrored(impulse, node_weights[n].mirrored)));
+    for (; n < particle.nodes_end; ++n) {
+      const NodeWeight& at_node = node_weights[n];
+      push[at_node.node].add(at_node.weight, at_node.mirrored ? impulse.mirrored(at_node.mirrored) : impulse);
+    }
   }
   const Workspace& reference = *workspace.reference_grid;
   for (const std::int64_t node : touched) {
     const double mass = reference.nodes[node].v[3];
     for (int c = 0; c < 3; ++c) {
-      push[node][c] = reference.held[node] >> c & 1 || !(mass > 0) ? 0 : push[node][c] / mass;
-      if (sum) (*sum)[node][c] += push[node][c];
+      push[node].c[c] = reference.held[node] >> c & 1 || !(mass > 0) ? 0 : push[node].c[c] / mass;
+      if (sum) (*sum)[node][c] += push[node].c[c];
     }
   }
-  gather([&](std::int64_t node) { return push[node]; });
-  for (const std::int64_t node : touched) push[node] = {};
+  gather();
 }
 
 void LagrangianContact::see_trial(const Workspace& workspace) {
-  const Workspace& reference = *workspace.reference_grid;
-  gather([&](std::int64_t node) -> Vector3 {
-    const NodeRecord& record = reference.nodes[node];
-    return {record.f[0] - record.v[0], record.f[1] - record.v[1], record.f[2] - record.v[2]};
-  });
+  for (const std::int64_t node : touched) {
+    const NodeRecord& record = workspace.reference_grid->nodes[node];
+    for (int c = 0; c < 3; ++c) push[node].c[c] = record.f[c] - record.v[c];
+  }
+  gather();
 }
 
 }  // namespace ogive

@@ -44,16 +44,24 @@ class LagrangianContact {
     Vector3 change{};                   // of its velocity
   };
   struct Particle {
-    double mass = 0;
     std::int32_t fields_end = 0, nodes_end = 0;
+  };
+  // A vector with a fourth component for the sake of the processor.
+  struct Record {
+    double c[4] = {};
+    void add(double weight, const Record& other) {
+      for (int i = 0; i < 4; ++i) c[i] += weight * other.c[i];
+    }
+    Record mirrored(std::int32_t signs) const { return {{signs & 1 ? -c[0] : c[0], signs & 2 ? -c[1] : c[1], signs & 4 ? -c[2] : c[2], 0}}; }
   };
 
   std::vector<Field> fields;
   std::vector<Particle> particles;       // those that reach such a node
-  std::vector<NodeWeight> field_weights; // node: index in `fields`
+  std::vector<NodeWeight> field_weights; // node: index in `fields`; weight: m_p N_I / m_I
   std::vector<NodeWeight> node_weights;  // node: of the reference grid
   std::vector<std::int64_t> touched;     // nodes of the reference grid that they reach
-  std::vector<Vector3> push;             // momentum, then velocity, by node of the reference grid
+  std::vector<Record> push;              // momentum, then velocity, by node of the reference grid
+  std::vector<Record> at_field;          // by index in `fields`
   std::vector<Vector3> total;            // velocity given to it in this step
   std::vector<Vector3> kept;             // part of it that moves the nodes and is then taken back
   // Of each node with contact records: index in `fields`, -1 none; components that change their sign.
@@ -78,8 +86,8 @@ class LagrangianContact {
   }
 
  private:
-  template <class VelocityOf>
-  void gather(VelocityOf&& velocity_of);
+  // The change of the fields' velocities by the velocities in `push`, which is emptied.
+  void gather();
 };
 
 }  // namespace ogive
