@@ -692,6 +692,9 @@ void start_contact(State& state, Workspace& workspace, double dt, StartUse use) 
         if (!pair.booked) pair.mapped = pair.found;
         ContactField &a = fields[pair.a], &b = fields[pair.b];
         pair.adjusted = relative_velocity(a, b, pair, rigid);
+        // Without a first phase of its own the pair is shown what that would have left.
+        if (pair.booked && pair.method->at_start && !pair.method->start_reaches_particles)
+          add(pair.adjusted, times(-std::max(dot(pair.adjusted, pair.normal), 0.0), pair.normal));
         if (pair.constraint.hold == Hold::Nothing) continue;
         // `impulse` is what reaches the particles, `kept` the momentum that does not.
         const Vector3 impulse = impulse_on_a(pair), couple = cross(pair.beside, impulse);

@@ -15,6 +15,7 @@ void LagrangianContact::find(const Model& model, const State& state, Workspace& 
     push[node] = {};
   }
   touched.clear();
+  mirror_impulse = {};
   if (!workspace.reference_grid) return;
   const Workspace& reference = *workspace.reference_grid;
   if (push.size() != reference.nodes.size()) {
@@ -111,25 +112,38 @@ void LagrangianContact::apply(const Workspace& workspace, std::vector<Vector3>* 
   for (std::size_t i = 0; i < fields.size(); ++i)
     at_field[i] = {{fields[i].impulse[0], fields[i].impulse[1], fields[i].impulse[2], 0}};
   std::int32_t f = 0, n = 0;
+  Record from_mirrors;
+  const auto turned = [&](const Record& impulse, const NodeWeight& at_node) {
+    const Record image = impulse.mirrored(at_node.mirrored);
+    from_mirrors.add(at_node.weight, image);
+    from_mirrors.add(-at_node.weight, impulse);
+    return image;
+  };
   for (const Particle& particle : particles) {
     Record impulse;
     for (; f < particle.fields_end; ++f) {
       const NodeWeight& from = field_weights[f];
-      impulse.add(from.weight, from.mirrored ? at_field[from.node].mirrored(from.mirrored) : at_field[from.node]);
+      impulse.add(from.weight, from.mirrored ? turned(at_field[from.node], from) : at_field[from.node]);
     }
     for (; n < particle.nodes_end; ++n) {
       const NodeWeight& at_node = node_weights[n];
-      push[at_node.node].add(at_node.weight, at_node.mirrored ? impulse.mirrored(at_node.mirrored) : impulse);
+      push[at_node.node].add(at_node.weight, at_node.mirrored ? turned(impulse, at_node) : impulse);
     }
   }
   const Workspace& reference = *workspace.reference_grid;
   for (const std::int64_t node : touched) {
     const double mass = reference.nodes[node].v[3];
     for (int c = 0; c < 3; ++c) {
-      push[node].c[c] = reference.held[node] >> c & 1 || !(mass > 0) ? 0 : push[node].c[c] / mass;
+      if (reference.held[node] >> c & 1) {
+        from_mirrors.c[c] -= push[node].c[c];
+        push[node].c[c] = 0;
+      }
+      push[node].c[c] /= mass;
       if (sum) (*sum)[node][c] += push[node].c[c];
     }
   }
+  const double share = sum == &total ? 1 : sum == &kept ? -1 : 0;
+  for (int c = 0; c < 3; ++c) mirror_impulse[c] += share * from_mirrors.c[c];
   gather();
 }
 

@@ -64,6 +64,7 @@ class LagrangianContact {
   std::vector<Record> at_field;          // by index in `fields`
   std::vector<Vector3> total;            // velocity given to it in this step
   std::vector<Vector3> kept;             // part of it that moves the nodes and is then taken back
+  Vector3 mirror_impulse{};              // what mirrors gave to the impulses of `total` without `kept`
   // Of each node with contact records: index in `fields`, -1 none; components that change their sign.
   std::vector<std::int32_t> at, mirrored, held;
 

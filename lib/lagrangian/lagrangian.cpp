@@ -341,6 +341,7 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
     NodeRecord& record = reference.nodes[node];
     for (int c = 0; c < 3; ++c) record.f[c] += contact.total[node][c];
   }
+  add(state.ledger.boundary_impulse, contact.mirror_impulse);
   hold_faces(state, reference);
   prescribe_points(model, state, reference, dt);
   unfold_motion(state, reference);
@@ -370,6 +371,15 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
   if (workspace.contact_needs.start_kept) {
     for (const std::int64_t node : contact.touched)
       for (int c = 0; c < 3; ++c) reference.nodes[node].v[c] -= contact.kept[node][c];
+    // What is taken back was booked at mirrors with the rest.
+    for (const FaceNodes& face : reference.faces)
+      for (const MirrorPair& pair : face.pairs)
+        for (int c = 0; c < 3; ++c) {
+          if (!face.fixed && c != face.axis) continue;
+          const bool turned = reference.image_signs[pair.image] >> c & 1;
+          const double kept = contact.empty() ? 0 : contact.kept[reference.image[pair.image]][c];
+          state.ledger.boundary_impulse[c] += 2.0 * pair.ghost_mass * (turned ? -kept : kept);
+        }
     unfold_velocity(reference);
     for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double*, double* v, double*) {
       for (int c = 0; c < 3; ++c) v[c] = node.v[c];
