@@ -16,8 +16,8 @@
 namespace ogive {
 namespace {
 
-constexpr int most_point_iterations = 500;
-constexpr double point_tolerance = 1e-12;
+constexpr int most_point_iterations = 300;
+constexpr double point_tolerance = 1e-9;  // of the largest velocity around
 
 bool loaded(const Model& model, const State& state) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b)
@@ -50,7 +50,7 @@ double mirror(const NodeWeight& at, int c) { return at.mirrored >> c & 1 ? -at.w
 //   sum_d (N M^-1 N^T)_cd lambda_d = w_c - N_a(X_c) V_a,   dV = M^-1 N^T lambda,
 // by conjugate gradients, each component by itself. Points that say the same more than once do no harm.
 // Node records hold {velocity at the beginning, mass | trial velocity}.
-void prescribe_points(const Model& model, State& state, Workspace& reference, double dt) {
+void prescribe_points(State& state, Workspace& reference, double dt) {
   const std::size_t count = reference.points.size();
   if (count == 0) return;
   const auto for_weights = [&](std::size_t c, auto&& visit) {
@@ -134,19 +134,27 @@ void prescribe_points(const Model& model, State& state, Workspace& reference, do
       state.ledger.external_work += work;
     }
   }
-  (void)model;
 }
 
-// Kinetic energy at the end of the step, with V^(n+1) of (3.21), and angular momentum. `filter` holds the internal forces
-// folded at mirrors, node records {velocity in the middle, mass | -}.
+void keep_forces(State& state, Workspace& reference) {
+  for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double*, double*, double* f) {
+    const NodeRecord& force = reference.filter[static_cast<std::size_t>(&node - reference.nodes.data())];
+    for (int c = 0; c < 3; ++c) f[c] = force.f[c];
+  });
+}
+
+// Kinetic energy at the end of the step, with V^(n+1) of (3.21), and angular momentum. `filter` holds the internal forces,
+// folded at mirrors; where there are none they are kept here, to save a pass over the nodes.
 void sum_nodes(State& state, Workspace& reference, double dt) {
   std::vector<double> kinetic(reference.slots.size(), 0.0);
   std::vector<Vector3> angular(reference.slots.size(), Vector3{});
-  for_state_nodes(state, reference, [&](std::int64_t s, NodeRecord& node, double* x, double* v, double*) {
+  const bool keep = reference.faces.empty();
+  for_state_nodes(state, reference, [&](std::int64_t s, NodeRecord& node, double* x, double* v, double* f) {
     const double mass = x[3];
     if (!(mass > 0)) return;
     const double* force = reference.filter[static_cast<std::size_t>(&node - reference.nodes.data())].f;
     for (int c = 0; c < 3; ++c) {
+      if (keep) f[c] = force[c];
       const double now = v[c] + 0.5 * dt * force[c] / mass;
       kinetic[s] += 0.5 * mass * now * now;
     }
@@ -241,6 +249,37 @@ void set_affine_velocity(const Model& model, State& state, const Workspace& refe
   }
 }
 
+// What the first phase of contact gave for the motion alone goes from the velocities of nodes and particles.
+void take_back_kept(const Model& model, State& state, Workspace& workspace) {
+  Workspace& reference = *workspace.reference_grid;
+  const LagrangianContact& contact = workspace.lagrangian_contact;
+  if (contact.empty()) return;
+  const auto kept_at = [&](std::int64_t image, std::int32_t signs, int c) {
+    const double kept = contact.kept[image][c];
+    return signs >> c & 1 ? -kept : kept;
+  };
+  for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double*, double* v, double*) {
+    const std::size_t at = static_cast<std::size_t>(&node - reference.nodes.data());
+    for (int c = 0; c < 3; ++c) v[c] -= kept_at(reference.image[at], reference.image_signs[at], c);
+  });
+  for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t) {
+    BodyState& body = state.bodies[link.body];
+    const Group& group = body.groups[link.group];
+    for (std::int64_t p = group.begin; p < group.padded_end(); ++p)
+      for_reference_nodes(model, state, reference, link.body, p, [&](const NodeWeight& at) {
+        for (int c = 0; c < 3; ++c) body.velocity[4 * p + c] -= at.weight * kept_at(at.node, at.mirrored, c);
+      });
+  });
+  // It was booked at mirrors with the rest.
+  for (const FaceNodes& face : reference.faces)
+    for (const MirrorPair& pair : face.pairs)
+      for (int c = 0; c < 3; ++c) {
+        if (!face.fixed && c != face.axis) continue;
+        state.ledger.boundary_impulse[c] +=
+            2.0 * pair.ghost_mass * kept_at(reference.image[pair.image], reference.image_signs[pair.image], c);
+      }
+}
+
 }  // namespace
 
 void prepare_lagrangian(const Model& model, State& state, Workspace& workspace, bool fresh) {
@@ -283,9 +322,9 @@ void retire_distorted(const Model& model, State& state, Workspace& workspace) {
 
 void take_velocities(const Model& model, State& state, Workspace& workspace, int body) {
   Workspace& reference = *workspace.reference_grid;
-  for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double* x, double*, double*) {
+  for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double* x, double*, double* f) {
     node.v[3] = x[3];
-    for (double& c : reference.filter[static_cast<std::size_t>(&node - reference.nodes.data())].f) c = 0;
+    std::copy_n(f, 3, reference.filter[static_cast<std::size_t>(&node - reference.nodes.data())].f);
   });
   project_velocities(model, state, reference, body);
   sum_nodes(state, reference, 0);
@@ -296,6 +335,20 @@ void kick_lagrangian(const Model& model, State& state, Workspace& workspace, dou
   if (!workspace.reference_grid) return;
   Workspace& reference = *workspace.reference_grid;
   reference.threads = workspace.threads;
+  const double kick = kick_time(state, dt);
+  if (reference.faces.empty() && !loaded(model, state) && model.numerics.gravity == Vector3{}) {
+    // The same as below in one pass.
+    for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, const double* x, const double* v, const double* f) {
+      const double factor = x[3] > 0 ? kick / x[3] : 0;
+      for (int c = 0; c < 3; ++c) {
+        node.v[c] = v[c];
+        node.f[c] = v[c] + factor * f[c];
+      }
+      node.v[3] = x[3];
+      node.f[3] = 0;
+    });
+    return;
+  }
   for_state_nodes(state, reference, [](std::int64_t, NodeRecord& node, const double* x, const double* v, const double* f) {
     for (int c = 0; c < 3; ++c) {
       node.v[c] = v[c];
@@ -310,7 +363,6 @@ void kick_lagrangian(const Model& model, State& state, Workspace& workspace, dou
       if (particles_loaded(model, state, link.body)) map_loads(model, state, reference, index);
     });
   }
-  const double kick = kick_time(state, dt);
   fold_force(state, reference, kick);
   trial_velocities(model, state, reference, kick);
 }
@@ -343,55 +395,36 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
   }
   add(state.ledger.boundary_impulse, contact.mirror_impulse);
   hold_faces(state, reference);
-  prescribe_points(model, state, reference, dt);
+  prescribe_points(state, reference, dt);
   unfold_motion(state, reference);
 
   // {velocity at the end, - | mean acceleration}, for the work of loads.
   const double kick = kick_time(state, dt);
-  for_nodes(reference, [&](NodeRecord& node) {
-    for (int c = 0; c < 3; ++c) {
-      const double start = node.v[c];
-      node.v[c] = node.f[c];
-      node.f[c] = kick > 0 ? (node.f[c] - start) / kick : 0;
-    }
-  });
   if (loaded(model, state)) {
+    for_nodes(reference, [&](NodeRecord& node) {
+      for (int c = 0; c < 3; ++c) {
+        const double end = node.f[c];
+        node.f[c] = (end - node.v[c]) / kick;
+        node.v[c] = end;
+      }
+    });
     for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t index) {
       if (particles_loaded(model, state, link.body)) measure_loads(model, state, reference, index, kick);
     });
     book_loads(model, state, reference, kick);
-  }
-
-  for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double* x, double* v, double*) {
-    for (int c = 0; c < 3; ++c) {
-      x[c] += dt * node.v[c];  // (3.20)
-      v[c] = node.v[c];
-    }
-  });
-  if (workspace.contact_needs.start_kept) {
-    for (const std::int64_t node : contact.touched)
-      for (int c = 0; c < 3; ++c) reference.nodes[node].v[c] -= contact.kept[node][c];
-    // What is taken back was booked at mirrors with the rest.
-    for (const FaceNodes& face : reference.faces)
-      for (const MirrorPair& pair : face.pairs)
-        for (int c = 0; c < 3; ++c) {
-          if (!face.fixed && c != face.axis) continue;
-          const bool turned = reference.image_signs[pair.image] >> c & 1;
-          const double kept = contact.empty() ? 0 : contact.kept[reference.image[pair.image]][c];
-          state.ledger.boundary_impulse[c] += 2.0 * pair.ghost_mass * (turned ? -kept : kept);
-        }
-    unfold_velocity(reference);
-    for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double*, double* v, double*) {
-      for (int c = 0; c < 3; ++c) v[c] = node.v[c];
+    for_nodes(reference, [](NodeRecord& node) {
+      for (int c = 0; c < 3; ++c) node.f[c] = node.v[c];
     });
   }
+
+  // (3.20), and nodes become {velocity | -}.
   for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double* x, double* v, double*) {
     NodeRecord& force = reference.filter[static_cast<std::size_t>(&node - reference.nodes.data())];
     for (int c = 0; c < 3; ++c) {
-      node.v[c] = x[c];
-      node.f[c] = v[c];
+      v[c] = node.v[c] = node.f[c];
+      x[c] += dt * node.f[c];
     }
-    node.v[3] = node.f[3] = 0;
+    node.v[3] = 0;
     for (double& c : force.f) c = 0;
   });
   const int shape = static_cast<int>(model.numerics.shape_function);
@@ -406,11 +439,11 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
         reference.materials[link.body], forces, reference.stress_sums[index]);
   });
   book_stress(model, state, reference, dt);
-  for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, double*, double*, double* f) {
-    const NodeRecord& force = reference.filter[static_cast<std::size_t>(&node - reference.nodes.data())];
-    for (int c = 0; c < 3; ++c) f[c] = force.f[c];
-  });
-  fold_filter(reference);
+  if (workspace.contact_needs.start_kept) take_back_kept(model, state, workspace);
+  if (!reference.faces.empty()) {
+    keep_forces(state, reference);
+    fold_filter(reference);
+  }
   sum_nodes(state, reference, dt);
 
   std::vector<double> speed_squared(state.bodies.size(), 0.0);

@@ -1,7 +1,6 @@
-// The pass over the particles of a total Lagrangian body, Lee et al. 2005, (3.5)-(3.7): from nodal positions x_a = X_a + U_a
-// and velocities V_a to
-//   x = N_a(X) x_a,  v = N_a(X) V_a,  F = x_a (x) grad N_a(X),
-// the law, and internal nodal force f_a = -V_0 P grad N_a(X), with the first Piola-Kirchhoff stress P = F T = J sigma F^-T.
+// The pass over the particles of a total Lagrangian body, Lee et al. 2005, (3.5)-(3.7): from nodal velocities V_a to
+//   v = N_a(X) V_a,  x' = x + dt v,  F' = F + dt V_a (x) grad N_a(X),
+// which with weights that never change are x' = N_a x_a' and F' = x_a' (x) grad N_a; the law, and internal nodal force f_a = -V_0 P grad N_a(X), with the first Piola-Kirchhoff stress P = F T = J sigma F^-T.
 // Weights are those of the particle's place in the reference configuration. They never change; to compute them anew costs
 // less than to load them (docs/performance.md).
 #pragma once
@@ -11,15 +10,13 @@
 namespace ogive {
 namespace OGIVE_ISA_NAMESPACE {
 
-// The nodes of `group` hold {x_a, 0 | V_a, 0}; `force` is where the sums of f_a go.
+// The nodes of `group` hold {V_a, 0 | -}; `force_nodes` is where the sums of f_a go.
 template <class Shape, int strength, int eos>
 void update_lagrangian(const KernelGroup& group, const KernelParticles& particles, const KernelMaterial& material,
                        NodeRecord* const (&force_nodes)[27], StressSums& sums) {
-  alignas(64) RecordPair motion[tile_size];
+  alignas(64) Record motion[tile_size];
   alignas(64) Record force[tile_size];
-  read_tile(group, [&](int t, const NodeRecord& record) {
-    motion[t] = pair_of(load_aligned<Record>(record.v), load_aligned<Record>(record.f));
-  });
+  read_tile(group, [&](int t, const NodeRecord& record) { motion[t] = load_aligned<Record>(record.v); });
   clear_tile(group, force);
   Scatter<Shape> forces;
   Scatter<Shape>::begin(forces, force);
@@ -28,6 +25,7 @@ void update_lagrangian(const KernelGroup& group, const KernelParticles& particle
   Lanes speed_squared{};
   LawSums law_sums;
   begin_sums(sums);
+  const double steps_per_cell = group.time_step * group.inverse_cell;
   Weights weights[stretch / lane_count];
   alignas(64) double gradients[3][3][stretch], products[3][3][stretch];
   for (std::int64_t start = group.begin; start < group.end; start += stretch) {
@@ -35,17 +33,13 @@ void update_lagrangian(const KernelGroup& group, const KernelParticles& particle
     for (int i = 0; i < count; i += lane_count) {
       Record gradient[3][lane_count], velocity[lane_count];
       for (int lane = 0; lane < lane_count; ++lane) {
-        RecordPair value, slope[3];
-        gather_slopes<Shape, Beside::Derivatives>(weights[i / lane_count], lane, motion, value, slope[0], slope[1],
-                                                  slope[2]);
-        for (int axis = 0; axis < 3; ++axis) gradient[axis][lane] = first_of(slope[axis]);
+        gather_slopes<Shape, Beside::Derivatives>(weights[i / lane_count], lane, motion, velocity[lane], gradient[0][lane],
+                                                  gradient[1][lane], gradient[2][lane]);
         const std::int64_t p = start + i + lane;
-        Record x = first_of(value), v = second_of(value);
-        x[3] = particles.position[4 * p + 3];
-        v[3] = 1.0;
-        store_aligned(particles.position + 4 * p, x);
-        store_aligned(particles.velocity + 4 * p, v);
-        velocity[lane] = v;
+        double* const x = particles.position + 4 * p;
+        store_aligned(x, load_aligned<Record>(x) + velocity[lane] * group.time_step);
+        velocity[lane][3] = 1.0;
+        store_aligned(particles.velocity + 4 * p, velocity[lane]);
       }
       transpose(velocity[0], velocity[1], velocity[2], velocity[3]);
       speed_squared = max(velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2], speed_squared);
@@ -65,7 +59,7 @@ void update_lagrangian(const KernelGroup& group, const KernelParticles& particle
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
           F_0[i][j] = load_aligned<LawLanes>(particles.deformation[3 * i + j] + p);
-          F_1[i][j] = load_aligned<LawLanes>(gradients[i][j] + part) * group.inverse_cell;
+          F_1[i][j] = F_0[i][j] + load_aligned<LawLanes>(gradients[i][j] + part) * steps_per_cell;
           store_aligned(particles.deformation[3 * i + j] + p, F_1[i][j]);
         }
       const LawLanes J = determinant(F_1);
