@@ -189,7 +189,8 @@ def main():
     chosen = choose(particle_files(arguments.inputs), arguments)
     directory = os.path.dirname(chosen[0][1]) or "."
     units = Units(directory)
-    thickness = arguments.mesh_width or scene_of(directory).get("grid", {}).get("cell_size")
+    cell = scene_of(directory).get("grid", {}).get("cell_size")  # an expression has no value here
+    thickness = arguments.mesh_width or (cell if isinstance(cell, (int, float)) else None)
     instants = [read_bodies(name, arguments.field, axis, offset, thickness) for _, name in chosen]
     if not any(len(body.position) for bodies in instants for body in bodies):
         raise Refused(f"no particle is near {arguments.plane}")
