@@ -50,8 +50,7 @@ void book_stress(const Model& model, State& state, const Workspace& workspace, d
                   "body \"" + model.bodies[b].name + "\": particle " + std::to_string(body.number[sums.bad_particle]) +
                       " at (" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) +
                       "), time " + std::to_string(state.time) + ": volume ratio must be positive and finite, got " +
-                      std::to_string(body.volume_ratio[sums.bad_particle]) +
-                      "; a smaller time_step_factor may help");
+                      std::to_string(body.volume_ratio[sums.bad_particle]) + "; a smaller time_step_factor may help");
     }
   }
 }

@@ -20,7 +20,8 @@ void for_coloured_groups(Workspace& workspace, Work&& work) {
       const FlushSubnormals flush;
 #pragma omp for schedule(dynamic, 1)
       for (std::int32_t p = begin; p < end; ++p)
-        for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
+        for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l)
+          work(workspace.links[l], l);
     }
   }
 }

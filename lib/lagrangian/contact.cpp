@@ -51,7 +51,8 @@ void LagrangianContact::find(const Model& model, const State& state, Workspace& 
         fields.push_back(mine);
       }
   if (fields.empty()) return;
-  // A node beyond a mirror counts as its image, which may itself lie beyond another: faces in the reverse of their order.
+  // A node beyond a mirror counts as its image, which may itself lie beyond another: faces in the reverse of their
+  // order.
   for (auto face = workspace.faces.rbegin(); face != workspace.faces.rend(); ++face)
     for (const MirrorPair& pair : face->pairs) {
       const std::int64_t ghost = record(pair.ghost), image = record(pair.image);
@@ -62,9 +63,6 @@ void LagrangianContact::find(const Model& model, const State& state, Workspace& 
 
   for (const GroupLinks& link : workspace.links) {
     if (!link.contact || !state.bodies[link.body].lagrangian) continue;
-    bool near = false;
-    for (const std::int32_t s : link.slot) near = near || (s >= 0 && workspace.slots[s].contact >= 0);
-    if (!near) continue;
     const BodyState& copy = state.copies[link.body];
     const Group& group = copy.groups[link.group];
     for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
@@ -81,7 +79,8 @@ void LagrangianContact::find(const Model& model, const State& state, Workspace& 
         if (mark == 0) touched.push_back(at_node.node);
         mark = 1;
       });
-      particles.push_back({static_cast<std::int32_t>(field_weights.size()), static_cast<std::int32_t>(node_weights.size())});
+      particles.push_back(
+          {static_cast<std::int32_t>(field_weights.size()), static_cast<std::int32_t>(node_weights.size())});
     }
   }
   for (const std::int64_t node : touched) push[node] = {};

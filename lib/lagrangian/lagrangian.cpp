@@ -45,8 +45,8 @@ void for_state_nodes(State& state, Workspace& reference, Work&& work) {
 
 double mirror(const NodeWeight& at, int c) { return at.mirrored >> c & 1 ? -at.weight : at.weight; }
 
-// (3.19). N_a(X_c) is not delta_ac: the velocities of nodes around a point are changed so that the point itself moves as it
-// should, by the impulses lambda_c at the points that change them least in the norm of the masses,
+// (3.19). N_a(X_c) is not delta_ac: the velocities of nodes around a point are changed so that the point itself moves
+// as it should, by the impulses lambda_c at the points that change them least in the norm of the masses,
 //   sum_d (N M^-1 N^T)_cd lambda_d = w_c - N_a(X_c) V_a,   dV = M^-1 N^T lambda,
 // by conjugate gradients, each component by itself. Points that say the same more than once do no harm.
 // Node records hold {velocity at the beginning, mass | trial velocity}.
@@ -64,11 +64,12 @@ void prescribe_points(State& state, Workspace& reference, double dt) {
     const auto wanted = [&](std::size_t c) {
       return reference.points[c].load < 0 ? 0.0 : state.loads[reference.points[c].load].value[axis];
     };
-    const auto free = [&](std::int64_t node) { return !(reference.held[node] >> axis & 1) && reference.nodes[node].v[3] > 0; };
+    const auto free = [&](std::int64_t node) {
+      return !(reference.held[node] >> axis & 1) && reference.nodes[node].v[3] > 0;
+    };
     // M^-1 N^T of a value at each point.
     const auto spread = [&](const std::vector<double>& values) {
-      for (std::size_t c = 0; c < count; ++c)
-        for_weights(c, [&](const NodeWeight& at) { change[at.node] = 0; });
+      for (std::size_t c = 0; c < count; ++c) for_weights(c, [&](const NodeWeight& at) { change[at.node] = 0; });
       for (std::size_t c = 0; c < count; ++c) {
         if (!acts(c)) continue;
         for_weights(c, [&](const NodeWeight& at) {
@@ -143,8 +144,8 @@ void keep_forces(State& state, Workspace& reference) {
   });
 }
 
-// Kinetic energy at the end of the step, with V^(n+1) of (3.21), and angular momentum. `filter` holds the internal forces,
-// folded at mirrors; where there are none they are kept here, to save a pass over the nodes.
+// Kinetic energy at the end of the step, with V^(n+1) of (3.21), and angular momentum. `filter` holds the internal
+// forces, folded at mirrors; where there are none they are kept here, to save a pass over the nodes.
 void sum_nodes(State& state, Workspace& reference, double dt) {
   std::vector<double> kinetic(reference.slots.size(), 0.0);
   std::vector<Vector3> angular(reference.slots.size(), Vector3{});
@@ -338,25 +339,27 @@ void kick_lagrangian(const Model& model, State& state, Workspace& workspace, dou
   const double kick = kick_time(state, dt);
   if (reference.faces.empty() && !loaded(model, state) && model.numerics.gravity == Vector3{}) {
     // The same as below in one pass.
-    for_state_nodes(state, reference, [&](std::int64_t, NodeRecord& node, const double* x, const double* v, const double* f) {
-      const double factor = x[3] > 0 ? kick / x[3] : 0;
-      for (int c = 0; c < 3; ++c) {
-        node.v[c] = v[c];
-        node.f[c] = v[c] + factor * f[c];
-      }
-      node.v[3] = x[3];
-      node.f[3] = 0;
-    });
+    for_state_nodes(state, reference,
+                    [&](std::int64_t, NodeRecord& node, const double* x, const double* v, const double* f) {
+                      const double factor = x[3] > 0 ? kick / x[3] : 0;
+                      for (int c = 0; c < 3; ++c) {
+                        node.v[c] = v[c];
+                        node.f[c] = v[c] + factor * f[c];
+                      }
+                      node.v[3] = x[3];
+                      node.f[3] = 0;
+                    });
     return;
   }
-  for_state_nodes(state, reference, [](std::int64_t, NodeRecord& node, const double* x, const double* v, const double* f) {
-    for (int c = 0; c < 3; ++c) {
-      node.v[c] = v[c];
-      node.f[c] = f[c];
-    }
-    node.v[3] = x[3];
-    node.f[3] = 0;
-  });
+  for_state_nodes(state, reference,
+                  [](std::int64_t, NodeRecord& node, const double* x, const double* v, const double* f) {
+                    for (int c = 0; c < 3; ++c) {
+                      node.v[c] = v[c];
+                      node.f[c] = f[c];
+                    }
+                    node.v[3] = x[3];
+                    node.f[3] = 0;
+                  });
   if (loaded(model, state)) {
     allocate_load_sums(model, state, reference);
     for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t index) {
@@ -433,10 +436,10 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
     NodeRecord* forces[27];
     for (int i = 0; i < 27; ++i)
       forces[i] = link.slot[i] < 0 ? nullptr : &reference.filter[static_cast<std::size_t>(link.slot[i]) * block_nodes];
-    reference.kernels->optional->update_lagrangian[shape][static_cast<int>(material.strength)]
-                                                  [static_cast<int>(material.eos)](
-        kernel_group(model, state, reference, link, dt), kernel_particles(state.bodies[link.body]),
-        reference.materials[link.body], forces, reference.stress_sums[index]);
+    reference.kernels->optional
+        ->update_lagrangian[shape][static_cast<int>(material.strength)][static_cast<int>(material.eos)](
+            kernel_group(model, state, reference, link, dt), kernel_particles(state.bodies[link.body]),
+            reference.materials[link.body], forces, reference.stress_sums[index]);
   });
   book_stress(model, state, reference, dt);
   if (workspace.contact_needs.start_kept) take_back_kept(model, state, workspace);
@@ -460,8 +463,8 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
     if (rules.when_distorted == WhenDistorted::Stop) {
       char text[64];
       std::snprintf(text, sizeof text, "%.6g, got %.6g", rules.distortion_limit, sums.worst_distortion);
-      throw Error(ErrorKind::Numerical, "body \"" + rules.name + "\": distortion |F| |F^-1| / 3 must be at most " + text +
-                                            " at time " + std::to_string(state.time + dt) +
+      throw Error(ErrorKind::Numerical, "body \"" + rules.name + "\": distortion |F| |F^-1| / 3 must be at most " +
+                                            text + " at time " + std::to_string(state.time + dt) +
                                             ", and when_distorted forbids to go on updated Lagrangian");
     }
     of.distorted = true;

@@ -17,8 +17,8 @@ namespace ogive {
 // Once after building or loading a state.
 void prepare_lagrangian(const Model& model, State& state, Workspace& workspace, bool fresh);
 
-// Bodies that were found too distorted go on updated Lagrangian: their particles carry all there is of them, but for the
-// kinetic energy of the nodes that they do not see, which is booked.
+// Bodies that were found too distorted go on updated Lagrangian: their particles carry all there is of them, but for
+// the kinetic energy of the nodes that they do not see, which is booked.
 void retire_distorted(const Model& model, State& state, Workspace& workspace);
 
 // After a host has set particle velocities: gives them to the nodes.
@@ -27,7 +27,8 @@ void take_velocities(const Model& model, State& state, Workspace& workspace, int
 // Trial velocities on the reference grid, (3.14).
 void kick_lagrangian(const Model& model, State& state, Workspace& workspace, double dt);
 
-// Velocities at the nodes where bodies meet: the trial ones after the first phase of contact, or those after the second.
+// Velocities at the nodes where bodies meet: the trial ones after the first phase of contact, or those after the
+// second.
 void set_lagrangian_trial(Workspace& workspace);
 void set_lagrangian_velocities(Workspace& workspace);
 

@@ -150,7 +150,8 @@ void link_reference_grid(const Model& model, State& state, Workspace& workspace,
     if (!state.bodies[b].lagrangian) continue;
     ReferenceState& of = state.bodies[b].reference;
     if (fresh)
-      for (AlignedVector<double>* array : {&of.node_position, &of.node_velocity, &of.node_force}) array->assign(size[b], 0.0);
+      for (AlignedVector<double>* array : {&of.node_position, &of.node_velocity, &of.node_force})
+        array->assign(size[b], 0.0);
     if (of.node_position.size() != size[b])
       throw Error(ErrorKind::Format, "state/bodies/" + std::to_string(b) + "/reference/node_position: expected " +
                                          std::to_string(size[b]) + " numbers, found " +
@@ -179,8 +180,8 @@ void link_reference_grid(const Model& model, State& state, Workspace& workspace,
   find_points(model, state, reference);
 }
 
-// V <- V + mean over particles of (v_p - N_a(X_p) V_a), from zero: the first pass is the mean, which pulls the edges of a body
-// towards its inside; the next ones take that back.
+// V <- V + mean over particles of (v_p - N_a(X_p) V_a), from zero: the first pass is the mean, which pulls the edges of
+// a body towards its inside; the next ones take that back.
 void project_velocities(const Model& model, State& state, const Workspace& reference, int index) {
   constexpr int passes = 50;
   constexpr double tolerance = 1e-13;
@@ -213,9 +214,11 @@ void project_velocities(const Model& model, State& state, const Workspace& refer
       });
     });
     if (!(worst > tolerance * scale)) break;
-    for (std::size_t i = 0; i < velocity.size(); ++i)
+    for (std::size_t i = 0; i < velocity.size(); ++i) {
+      const double mass = reference.nodes[i].v[3];
       for (int c = 0; c < 3; ++c)
-        if (reference.nodes[i].v[3] > 0 && !(reference.held[i] >> c & 1)) velocity[i][c] += change[i][c] / reference.nodes[i].v[3];
+        if (mass > 0 && !(reference.held[i] >> c & 1)) velocity[i][c] += change[i][c] / mass;
+    }
   }
   for_particles([&](std::int64_t p) {
     const Vector3 v = at_particle(p);

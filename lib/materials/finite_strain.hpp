@@ -8,12 +8,13 @@
 // The flow direction is the trial one, so that the return is exact for a step: g = f* / (2 G + 2/3 H). Cauchy stress
 // F T F^T / J. e is the particle's plastic strain.
 //
-// Multiplicative: F = F_e F_p, logarithmic elastic strain h = ln(F_e^T F_e) / 2 and its stress M = K tr(h) 1 + 2 G dev h in
-// the intermediate configuration, where back stress and flow live, F_p' = exp(g N) F_p, N = n/|n|, n = dev M - b, with the
-// same f, b', e'. A rotation of the body does not reach the intermediate configuration, so that neither needs a rate.
+// Multiplicative: F = F_e F_p, logarithmic elastic strain h = ln(F_e^T F_e) / 2 and its stress M = K tr(h) 1 + 2 G dev
+// h in the intermediate configuration, where back stress and flow live, F_p' = exp(g N) F_p, N = n/|n|, n = dev M - b,
+// with the same f, b', e'. A rotation of the body does not reach the intermediate configuration, so that neither needs
+// a rate.
 //
-// Energy per initial volume: elastic energy, and the plastic work of the mean of the stresses before and after a step; for
-// the first form that sum is exactly the work of the mean of T on the increment of E.
+// Energy per initial volume: elastic energy, and the plastic work of the mean of the stresses before and after a step;
+// for the first form that sum is exactly the work of the mean of T on the increment of E.
 #pragma once
 
 #include "simd/lanes.hpp"
@@ -35,7 +36,9 @@ enum {
 constexpr bool is_plastic(int strength) { return strength >= strength_j2_power; }
 constexpr bool has_mixed_hardening(int strength) { return strength >= strength_j2_mixed; }
 // Laws of F, not of the rate of strain.
-constexpr bool is_hyperelastic(int strength) { return strength == strength_neo_hookean || has_mixed_hardening(strength); }
+constexpr bool is_hyperelastic(int strength) {
+  return strength == strength_neo_hookean || has_mixed_hardening(strength);
+}
 // Values that a law remembers: E_p and b; the inverse of F_p row by row and b.
 constexpr int history_size(int strength) {
   return strength == strength_j2_mixed ? 12 : strength == strength_j2_multiplicative ? 15 : 0;
@@ -144,15 +147,15 @@ OGIVE_INLINE Symmetric<V> pushed_forward(const V (&F)[3][3], const Symmetric<V>&
   return {product(0, 0), product(1, 1), product(2, 2), product(1, 2), product(0, 2), product(0, 1)};
 }
 
-// ln C = 2 (Z + Z^3/3 + Z^5/5 + ...), Z = (C - 1)(C + 1)^-1, to Z^21: below 1e-13 for principal stretches of 1/1.5 to 1.5.
+// ln C = 2 (Z + Z^3/3 + Z^5/5 + ...), Z = (C - 1)(C + 1)^-1, to Z^21: below 1e-13 for principal stretches of 1/1.5
+// to 1.5.
 template <class V>
 OGIVE_INLINE Symmetric<V> logarithm(const Symmetric<V>& C) {
   const V one = broadcast<V>(1.0);
   const Symmetric<V> Z = commuting_product(plus_diagonal(C, -one), inverse_of(plus_diagonal(C, one)));
   const Symmetric<V> squared = commuting_product(Z, Z);
   Symmetric<V> series = {broadcast<V>(2.0 / 21), broadcast<V>(2.0 / 21), broadcast<V>(2.0 / 21), V{}, V{}, V{}};
-  for (int k = 19; k >= 1; k -= 2)
-    series = plus_diagonal(commuting_product(series, squared), broadcast<V>(2.0 / k));
+  for (int k = 19; k >= 1; k -= 2) series = plus_diagonal(commuting_product(series, squared), broadcast<V>(2.0 / k));
   return commuting_product(series, Z);
 }
 
@@ -192,8 +195,12 @@ OGIVE_INLINE void neo_hookean(const KernelMaterial& m, LawState<V>& s) {
   const Symmetric<V> b = left_cauchy_green(s.F);
   const V inverse_J = 1.0 / J;
   const V pressure_part = (m.lambda * log_J - m.G) * inverse_J, shear_part = m.G * inverse_J;
-  s.stress = {pressure_part + shear_part * b.xx, pressure_part + shear_part * b.yy, pressure_part + shear_part * b.zz,
-              shear_part * b.yz,                 shear_part * b.xz,                 shear_part * b.xy};
+  s.stress = {pressure_part + shear_part * b.xx,
+              pressure_part + shear_part * b.yy,
+              pressure_part + shear_part * b.zz,
+              shear_part * b.yz,
+              shear_part * b.xz,
+              shear_part * b.xy};
   s.energy = 0.5 * m.lambda * log_J * log_J - m.G * log_J + 0.5 * m.G * (trace(b) - 3.0);
   // Longitudinal wave along n: rho0 c^2 = lambda (1 - ln J) + G (1 + n b n), n b n by its bound.
   const V bulk = m.lambda * max(1.0 - log_J, zero) + m.G;
@@ -205,7 +212,7 @@ OGIVE_INLINE void neo_hookean(const KernelMaterial& m, LawState<V>& s) {
 
 template <class V>
 OGIVE_INLINE Symmetric<V> history_tensor(const LawState<V>& s, int first) {
-  return {s.history[first], s.history[first + 1], s.history[first + 2],
+  return {s.history[first],     s.history[first + 1], s.history[first + 2],
           s.history[first + 3], s.history[first + 4], s.history[first + 5]};
 }
 
@@ -224,8 +231,7 @@ template <class V>
 OGIVE_INLINE V mixed_return(const KernelMaterial& m, LawState<V>& s, const Symmetric<V>& trial, Symmetric<V>& back,
                             Symmetric<V>& direction) {
   constexpr double root = 0.816496580927726;  // sqrt(2/3)
-  const Symmetric<V> n =
-      combined(plus_diagonal(trial, (-1.0 / 3.0) * trace(trial)), broadcast<V>(-1.0), back);
+  const Symmetric<V> n = combined(plus_diagonal(trial, (-1.0 / 3.0) * trace(trial)), broadcast<V>(-1.0), back);
   const V size = sqrt(contract(n, n));
   const V f = size - root * (m.A + m.isotropic * m.B * s.plastic_strain);
   const V g = max(f, broadcast<V>(0.0)) * (1.0 / (2.0 * m.G + 2.0 / 3.0 * m.B));
@@ -262,16 +268,18 @@ OGIVE_INLINE void j2_mixed(const KernelMaterial& m, const V (&F_0)[3][3], LawSta
   const V J = determinant(s.F);
   s.stress = scaled(1.0 / J, pushed_forward(s.F, T));
   s.volume_ratio = J;
-  // Along N at rest: rho0 c^2 <= (lambda + 2 G) N C N + N T N; along n of the present: (lambda + 2 G) (n b n)^2 + n tau n.
+  // Along N at rest: rho0 c^2 <= (lambda + 2 G) N C N + N T N; along n of the present: (lambda + 2 G) (n b n)^2 + n tau
+  // n.
   const V modulus = broadcast<V>(m.K + 4.0 / 3.0 * m.G), zero = broadcast<V>(0.0);
   const V b = largest_eigenvalue_bound(left_cauchy_green(s.F));
   s.wave_speed_squared = (modulus * b * b + J * max(largest_eigenvalue_bound(s.stress), zero)) * (1.0 / m.density);
-  s.reference_speed_squared = (modulus * largest_eigenvalue_bound(right_cauchy_green(s.F)) +
-                               max(largest_eigenvalue_bound(T), zero)) * (1.0 / m.density);
+  s.reference_speed_squared =
+      (modulus * largest_eigenvalue_bound(right_cauchy_green(s.F)) + max(largest_eigenvalue_bound(T), zero)) *
+      (1.0 / m.density);
 }
 
-// exp and the flow direction of the trial state leave the return exact where strain and back stress have common axes, else
-// to the second order of the elastic strain.
+// exp and the flow direction of the trial state leave the return exact where strain and back stress have common axes,
+// else to the second order of the elastic strain.
 template <class V>
 OGIVE_INLINE void j2_multiplicative(const KernelMaterial& m, const V (&F_0)[3][3], LawState<V>& s) {
   const V half = broadcast<V>(0.5), third = broadcast<V>(1.0 / 3.0), two_G = broadcast<V>(2.0 * m.G);
@@ -312,8 +320,7 @@ OGIVE_INLINE void j2_multiplicative(const KernelMaterial& m, const V (&F_0)[3][3
   s.volume_ratio = J;
   s.wave_speed_squared =
       (broadcast<V>(m.K + 4.0 / 3.0 * m.G) + 2.0 * max(-pressure_part, broadcast<V>(0.0))) * (1.0 / m.density);
-  s.reference_speed_squared =
-      s.wave_speed_squared * largest_eigenvalue_bound(inverse_of(right_cauchy_green(s.F)));
+  s.reference_speed_squared = s.wave_speed_squared * largest_eigenvalue_bound(inverse_of(right_cauchy_green(s.F)));
 }
 
 template <int strength, class V>

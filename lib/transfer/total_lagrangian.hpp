@@ -1,8 +1,9 @@
 // The pass over the particles of a total Lagrangian body, Lee et al. 2005, (3.5)-(3.7): from nodal velocities V_a to
 //   v = N_a(X) V_a,  x' = x + dt v,  F' = F + dt V_a (x) grad N_a(X),
-// which with weights that never change are x' = N_a x_a' and F' = x_a' (x) grad N_a; the law, and internal nodal force f_a = -V_0 P grad N_a(X), with the first Piola-Kirchhoff stress P = F T = J sigma F^-T.
-// Weights are those of the particle's place in the reference configuration. They never change; to compute them anew costs
-// less than to load them (docs/performance.md).
+// which with weights that never change are x' = N_a x_a' and F' = x_a' (x) grad N_a; then the law, and the internal
+// nodal force f_a = -V_0 P grad N_a(X), with the first Piola-Kirchhoff stress P = F T = J sigma F^-T. Weights are those
+// of the particle's place in the reference configuration. They never change; to compute them anew costs less than to
+// load them (docs/performance.md).
 #pragma once
 
 #include "transfer/stress.hpp"
@@ -33,8 +34,8 @@ void update_lagrangian(const KernelGroup& group, const KernelParticles& particle
     for (int i = 0; i < count; i += lane_count) {
       Record gradient[3][lane_count], velocity[lane_count];
       for (int lane = 0; lane < lane_count; ++lane) {
-        gather_slopes<Shape, Beside::Derivatives>(weights[i / lane_count], lane, motion, velocity[lane], gradient[0][lane],
-                                                  gradient[1][lane], gradient[2][lane]);
+        gather_slopes<Shape, Beside::Derivatives>(weights[i / lane_count], lane, motion, velocity[lane],
+                                                  gradient[0][lane], gradient[1][lane], gradient[2][lane]);
         const std::int64_t p = start + i + lane;
         double* const x = particles.position + 4 * p;
         store_aligned(x, load_aligned<Record>(x) + velocity[lane] * group.time_step);
@@ -42,7 +43,8 @@ void update_lagrangian(const KernelGroup& group, const KernelParticles& particle
         store_aligned(particles.velocity + 4 * p, velocity[lane]);
       }
       transpose(velocity[0], velocity[1], velocity[2], velocity[3]);
-      speed_squared = max(velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2], speed_squared);
+      speed_squared =
+          max(velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2], speed_squared);
       for (int b = 0; b < 3; ++b) {
         transpose(gradient[b][0], gradient[b][1], gradient[b][2], gradient[b][3]);
         for (int a = 0; a < 3; ++a) store_aligned(gradients[a][b] + i, gradient[b][a]);

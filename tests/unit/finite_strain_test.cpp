@@ -1,10 +1,10 @@
 // Laws of finite strain at a point, lib/materials/finite_strain.hpp, against closed forms.
 #define OGIVE_ISA_NAMESPACE finite_strain_test
-#include "materials/law.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "materials/law.hpp"
 
 namespace {
 
@@ -99,7 +99,8 @@ void expect_uniaxial_cycles(double isotropic, double amplitude) {
     for (int i = 1; i <= steps; ++i) {
       strain = from + (target - from) * i / steps;
       pull(point, strain, across);
-      const double trial = youngs_modulus * (strain - plastic) - back, excess = std::abs(trial) - m.A - isotropic * m.B * sum;
+      const double trial = youngs_modulus * (strain - plastic) - back,
+                   excess = std::abs(trial) - m.A - isotropic * m.B * sum;
       if (excess > 0) {
         const double increment = excess / (youngs_modulus + m.B), sign = trial > 0 ? 1 : -1;
         plastic += sign * increment;
@@ -140,7 +141,7 @@ void expect_rotation_without_stress_or_flow() {
   }
   EXPECT_NEAR(point.s.plastic_strain[0], before.plastic_strain[0], 1e-12);
   EXPECT_NEAR(point.s.energy[0] / before.energy[0], 1, 1e-12);
-  const Symmetric<V> &a = before.stress, &b = point.s.stress;
+  const Symmetric<V>&a = before.stress, &b = point.s.stress;
   const double c = std::cos(angle), s = std::sin(angle);
   const double scale = 1e-9 * point.m.A;
   EXPECT_NEAR(b.xx[0], c * c * a.xx[0] - 2 * c * s * a.xy[0] + s * s * a.yy[0], scale);
@@ -220,10 +221,11 @@ TEST(FiniteStrain, TheEnergyIsTheWorkOfTheStress) {
   Point<strength_j2_mixed> first(0.5);
   Point<strength_j2_multiplicative> second(0.5);
   double work[2] = {};
-  const auto kirchhoff_work = [](const auto& before, const auto& after, const double (&L)[3][3]) {
+  const auto kirchhoff_work = [](const auto& before, const auto& after, const double(&L)[3][3]) {
     const auto of = [&](const auto& s) {
       const auto& t = s.stress;
-      return s.volume_ratio[0] * (t.xx[0] * L[0][0] + t.yy[0] * L[1][1] + t.zz[0] * L[2][2] + t.xy[0] * (L[0][1] + L[1][0]));
+      return s.volume_ratio[0] *
+             (t.xx[0] * L[0][0] + t.yy[0] * L[1][1] + t.zz[0] * L[2][2] + t.xy[0] * (L[0][1] + L[1][0]));
     };
     return 0.5 * (of(before) + of(after));
   };
