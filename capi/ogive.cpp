@@ -29,6 +29,7 @@
 #include "energy_watch.hpp"
 #include "error.hpp"
 #include "grid.hpp"
+#include "lagrangian/lagrangian.hpp"
 #include "loads/loads.hpp"
 #include "model.hpp"
 #include "plan.hpp"
@@ -322,8 +323,8 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   for (int c = 0; c < 3; ++c)
     if (!std::isfinite(full.velocity[c]) || !std::isfinite(full.angular_velocity[c]) || !std::isfinite(full.angular_centre[c]))
       refuse(prefix + "velocity, angular_velocity and angular_centre must be finite");
-  if (full.formulation < 0 || full.formulation > 2)
-    refuse(prefix + "formulation: must be 0..2, got " + std::to_string(full.formulation));
+  if (full.formulation < 0 || full.formulation > 3)
+    refuse(prefix + "formulation: must be 0..3, got " + std::to_string(full.formulation));
   if (world->model.bodies.size() >= 60000) refuse(prefix + "at most 60000 bodies");
   if (count < 1) refuse(prefix + "must have at least one particle, got " + std::to_string(count));
   if (count >= (std::int64_t{1} << 31) - 64) refuse(prefix + "must have fewer than 2^31 particles");
@@ -337,6 +338,13 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   rules.name = body_name;
   rules.material = full.material.index;
   rules.formulation = static_cast<Formulation>(full.formulation);
+  rules.distortion_limit = full.distortion_limit;
+  rules.when_distorted = static_cast<WhenDistorted>(full.when_distorted);
+  try {
+    if (rules.total_lagrangian()) world->model.validate_distortion(rules);
+  } catch (const Error& error) {
+    throw Error(error.kind(), prefix + error.what());
+  }
   std::vector<std::int64_t> kept;
   std::vector<double> share;
   kept.reserve(static_cast<std::size_t>(count));
@@ -378,7 +386,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
 
   BodyState body;
   body.particles = static_cast<std::int64_t>(kept.size());
-  allocate_particles(material, rules.rigid(), body.particles, body);
+  allocate_particles(material, rules, body.particles, body);
   Vector3 momentum{};
   double mass_sum = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -545,8 +553,8 @@ bool has_field(const ogive_world* world, int body, const Field& field) {
   if (name == "plastic_strain") return material.plastic();
   if (name == "temperature") return material.thermal();
   if (name == "failed") return material.failure != Failure::None;
-  if (name == "deformation_gradient") return material.hyperelastic();
-  if (name == "affine_velocity") return model.numerics.affine();
+  if (name == "deformation_gradient") return !world->state.bodies[body].deformation[0].empty();
+  if (name == "affine_velocity") return !world->state.bodies[body].affine.empty();
   if (name == "force") return !world->state.bodies[body].force.empty();
   return true;
 }
@@ -572,6 +580,12 @@ const Field& field_named(const ogive_world* world, ogive_body_id body, const cha
       return field;
     }
   refuse("field: must be a name that ogive_field_name gives, got \"" + std::string(name) + "\"");
+}
+
+bool settable_in_reference(const char* name) {
+  for (const char* const settable : {"velocity", "energy", "temperature", "force"})
+    if (std::strcmp(name, settable) == 0) return true;
+  return false;
 }
 
 void check_count(const BodyState& body, const Field& field, std::int64_t count) {
@@ -996,6 +1010,7 @@ void ogive_material_def_init(ogive_material_def* def, size_t size) {
   full.reference_strain_rate = defaults.reference_strain_rate;
   full.room_temperature = defaults.room_temperature;
   full.taylor_quinney = defaults.taylor_quinney;
+  full.isotropic_fraction = defaults.isotropic_fraction;
   initialise(def, size, full);
 }
 
@@ -1027,6 +1042,7 @@ static Material material_from(const std::string& name, const ogive_material_def*
   m.failure_strain = d.failure_strain;
   m.viscosity_linear = d.viscosity_linear;
   m.viscosity_quadratic = d.viscosity_quadratic;
+  m.isotropic_fraction = d.isotropic_fraction;
   try {
     m.validate();
   } catch (const Error& error) {
@@ -1061,6 +1077,7 @@ ogive_status ogive_material_change(ogive_world* world, ogive_material_id id, con
 void ogive_body_def_init(ogive_body_def* def, size_t size) {
   ogive_body_def defaults{};
   defaults.material.index = -1;
+  defaults.distortion_limit = Body{}.distortion_limit;
   initialise(def, size, defaults);
 }
 
@@ -1478,9 +1495,11 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     full.contact_work = state.ledger.contact_work;
     full.boundary_work = state.ledger.boundary_work;
     full.external_work = state.ledger.external_work;
+    full.contact_dissipation = state.ledger.contact_dissipation;
     full.prescribed_work = state.ledger.prescribed_work;
     full.initial_total = state.ledger.initial_total;
     full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation +
+                 full.contact_dissipation +
                  full.transfer_dissipation - full.external_work - full.prescribed_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
@@ -1555,6 +1574,9 @@ ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id id, o
     full.initial_speed = std::sqrt(full.initial_speed);
     full.maximum_plastic_strain = audit.maximum_plastic_strain;
     full.maximum_temperature = audit.maximum_temperature;
+    const Formulation given = world->model.bodies[id.index].formulation;
+    const bool updated = given == Formulation::TotalLagrangian && !body.lagrangian;
+    full.formulation = static_cast<std::int32_t>(updated ? Formulation::Deformable : given);
     deliver(full, result, "result");
   });
 }
@@ -1612,6 +1634,10 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
     if (world->model.bodies[id.index].rigid() && std::strcmp(name, "force") != 0)
       refuse("field \"" + std::string(name) + "\": cannot be set, the body is rigid; only \"force\" can");
     if (!field.settable) refuse("field \"" + std::string(name) + "\": cannot be set");
+    const bool lagrangian = world->state.bodies[id.index].lagrangian;
+    if (lagrangian && !settable_in_reference(field.name))
+      refuse("field \"" + std::string(name) + "\": cannot be set, the body is total Lagrangian and has it from its nodes; "
+             "velocity, energy, temperature and force can");
     BodyState& body = const_cast<BodyState&>(body_of(world, id));
     check_count(body, field, count);
     if (count > 0) require_pointer(values, "values");
@@ -1652,6 +1678,7 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
     if (moves_energy) world->state.energy_watch.from_host += total_energy(world->model, world->state) - energy_before;
     if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
     if (field_name == "velocity") {
+      if (lagrangian) take_velocities(world->model, world->state, world->workspace, id.index);
       // The next step must be safe for the new speed as well.
       const double dt = world->state.stable_time_step;
       const double wave = world->model.numerics.time_step_factor * world->model.grid.cell_size / dt;

@@ -126,6 +126,7 @@ class Builder {
     assign(def.failure_strain, material.failure_strain);
     assign(def.viscosity_linear, material.viscosity_linear);
     assign(def.viscosity_quadratic, material.viscosity_quadratic);
+    assign(def.isotropic_fraction, material.isotropic_fraction);
     return def;
   }
 
@@ -147,6 +148,8 @@ class Builder {
     assign(def.angular_velocity, body.angular_velocity);
     assign(def.angular_centre, body.angular_centre);
     assign(def.formulation, body.formulation);
+    assign(def.distortion_limit, body.distortion_limit);
+    assign(def.when_distorted, body.when_distorted);
     ogive_body_id id{-1};
     if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
       ogive_solid_def shape;

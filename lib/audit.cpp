@@ -79,14 +79,18 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
       audit.first_moment[c] += part.first_moment[c];
     }
   }
+  if (body.lagrangian) {
+    audit.kinetic = body.reference.kinetic;
+    audit.angular_momentum = body.reference.angular_momentum;
+  }
   if (model.grid.axisymmetric()) audit.angular_momentum = {};  // of the whole body
   return audit;
 }
 
 double total_energy(const Model& model, const State& state) {
   double total =
-      state.ledger.friction_dissipation + state.ledger.transfer_dissipation - state.ledger.external_work -
-      state.ledger.prescribed_work;
+      state.ledger.friction_dissipation + state.ledger.transfer_dissipation + state.ledger.contact_dissipation -
+      state.ledger.external_work - state.ledger.prescribed_work;
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
     const BodyAudit audit = audit_body(model, state, b);
     const BodyTotals& totals = state.bodies[b].totals;

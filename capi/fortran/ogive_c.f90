@@ -47,6 +47,8 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_STRENGTH_NEO_HOOKEAN = 1
   integer(c_int32_t), parameter :: OGIVE_STRENGTH_J2_POWER = 2
   integer(c_int32_t), parameter :: OGIVE_STRENGTH_JOHNSON_COOK = 3
+  integer(c_int32_t), parameter :: OGIVE_STRENGTH_J2_MIXED = 4
+  integer(c_int32_t), parameter :: OGIVE_STRENGTH_J2_MULTIPLICATIVE = 5
   integer(c_int32_t), parameter :: OGIVE_EOS_LINEAR = 0
   integer(c_int32_t), parameter :: OGIVE_EOS_MIE_GRUNEISEN = 1
   integer(c_int32_t), parameter :: OGIVE_FAILURE_NONE = 0
@@ -54,6 +56,9 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_FORMULATION_DEFORMABLE = 0
   integer(c_int32_t), parameter :: OGIVE_FORMULATION_RIGID_FREE = 1
   integer(c_int32_t), parameter :: OGIVE_FORMULATION_RIGID_PRESCRIBED = 2
+  integer(c_int32_t), parameter :: OGIVE_FORMULATION_TOTAL_LAGRANGIAN = 3
+  integer(c_int32_t), parameter :: OGIVE_DISTORTED_UPDATE = 0
+  integer(c_int32_t), parameter :: OGIVE_DISTORTED_STOP = 1
   integer(c_int32_t), parameter :: OGIVE_SOLID_BOX = 0
   integer(c_int32_t), parameter :: OGIVE_SOLID_CYLINDER = 1
   integer(c_int32_t), parameter :: OGIVE_SOLID_SPHERE = 2
@@ -177,6 +182,7 @@ module ogive_c
     real(c_double) :: failure_strain
     real(c_double) :: viscosity_linear
     real(c_double) :: viscosity_quadratic
+    real(c_double) :: isotropic_fraction
   end type ogive_material_def
 
   type, bind(C) :: ogive_body_def
@@ -187,6 +193,9 @@ module ogive_c
     real(c_double) :: angular_centre(3)
     integer(c_int32_t) :: formulation
     integer(c_int32_t) :: reserved0
+    real(c_double) :: distortion_limit
+    integer(c_int32_t) :: when_distorted
+    integer(c_int32_t) :: reserved1
   end type ogive_body_def
 
   type, bind(C) :: ogive_solid_def
@@ -276,6 +285,7 @@ module ogive_c
     real(c_double) :: energy_growth
     real(c_double) :: energy_growth_time
     real(c_double) :: energy_warning_time
+    real(c_double) :: contact_dissipation
   end type ogive_ledger
 
   type, bind(C) :: ogive_body_result
@@ -303,6 +313,8 @@ module ogive_c
     real(c_double) :: maximum_temperature
     real(c_double) :: angular_momentum(3)
     real(c_double) :: angular_velocity(3)
+    integer(c_int32_t) :: formulation
+    integer(c_int32_t) :: reserved1
   end type ogive_body_result
 
   type, bind(C) :: ogive_load_result

@@ -1,6 +1,7 @@
 // The kernels of two-dimensional models, of one instruction set: compiled as kernels_isa.cpp is. Plane strain and
 // axisymmetry share them: what the axis adds is a term that a group asks for (KernelGroup::axisymmetric).
 #include "transfer/contact_stress.hpp"
+#include "transfer/laws.hpp"
 #include "transfer/stress.hpp"
 #include "transfer/xpic.hpp"
 
@@ -13,17 +14,13 @@ using PlanarGimp = Planar<GimpShape>;
 
 #define OGIVE_TEXT_OF(name) #name
 #define OGIVE_TEXT(name) OGIVE_TEXT_OF(name)
-#define OGIVE_LAWS(Shape)                                                                                           \
-  {{update_stress<Shape, strength_elastic, eos_linear>, update_stress<Shape, strength_elastic, eos_mie_gruneisen>}, \
-   {update_stress<Shape, strength_neo_hookean, eos_linear>, nullptr},                                               \
-   {update_stress<Shape, strength_j2_power, eos_linear>, update_stress<Shape, strength_j2_power, eos_mie_gruneisen>}, \
-   {update_stress<Shape, strength_johnson_cook, eos_linear>,                                                        \
-    update_stress<Shape, strength_johnson_cook, eos_mie_gruneisen>}}
+#define OGIVE_KERNEL(Shape, strength, eos) update_stress<Shape, strength, eos>
 
 static const OptionalKernels planar_optional_kernels = {
     {map_contact_stress<PlanarLinear>, map_contact_stress<PlanarBSpline>, map_contact_stress<PlanarGimp>},
     {filter_velocity<PlanarLinear>, filter_velocity<PlanarBSpline>, filter_velocity<PlanarGimp>},
     {update_particles_xpic<PlanarLinear>, update_particles_xpic<PlanarBSpline>, update_particles_xpic<PlanarGimp>},
+    {},  // total Lagrangian bodies are three-dimensional
 };
 
 extern const KernelTable planar_table;
@@ -33,7 +30,7 @@ const KernelTable planar_table = {
      {map_momentum<PlanarBSpline, false>, map_momentum<PlanarBSpline, true>},
      {map_momentum<PlanarGimp, false>, map_momentum<PlanarGimp, true>}},
     {map_contact<PlanarLinear>, map_contact<PlanarBSpline>, map_contact<PlanarGimp>},
-    {OGIVE_LAWS(PlanarLinear), OGIVE_LAWS(PlanarBSpline), OGIVE_LAWS(PlanarGimp)},
+    {OGIVE_LAWS(PlanarLinear, OGIVE_KERNEL), OGIVE_LAWS(PlanarBSpline, OGIVE_KERNEL), OGIVE_LAWS(PlanarGimp, OGIVE_KERNEL)},
     {map_internal_force<PlanarLinear>, map_internal_force<PlanarBSpline>, map_internal_force<PlanarGimp>},
     {{update_particles<PlanarLinear, false>, update_particles<PlanarLinear, true>},
      {update_particles<PlanarBSpline, false>, update_particles<PlanarBSpline, true>},

@@ -404,7 +404,7 @@ friction = 0
   EXPECT_EQ(scene.walls[1].rule.method, OGIVE_CONTACT_HUANG_FIRST);
   EXPECT_EQ(refusal({{"bodies.ball.formulation", "rigd"}}),
             "--set bodies.ball.formulation=rigd: bodies.ball.formulation: must be one of deformable, rigid, "
-            "rigid_prescribed, got \"rigd\"; did you mean \"rigid\"?");
+            "rigid_prescribed, total_lagrangian, got \"rigd\"; did you mean \"rigid\"?");
   EXPECT_NE(refusal({}, "[[bodies.extra.motion]]\ntime = 0\n[bodies.extra]\nmaterial = \"zinc\"\nsphere = { radius = 1 }\n"
                         "spacing = 0.5\n").find("bodies.extra.motion: needs formulation = \"rigid_prescribed\""),
             std::string::npos);
