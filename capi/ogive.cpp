@@ -1675,10 +1675,10 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
             material.yield_stress_at(body.plastic_strain[p], material.thermal() ? body.temperature[p] : 0);
       }
     });
+    if (field_name == "velocity" && lagrangian) take_velocities(world->model, world->state, world->workspace, id.index);
     if (moves_energy) world->state.energy_watch.from_host += total_energy(world->model, world->state) - energy_before;
     if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
     if (field_name == "velocity") {
-      if (lagrangian) take_velocities(world->model, world->state, world->workspace, id.index);
       // The next step must be safe for the new speed as well.
       const double dt = world->state.stable_time_step;
       const double wave = world->model.numerics.time_step_factor * world->model.grid.cell_size / dt;

@@ -39,7 +39,7 @@ void update_lagrangian(const KernelGroup& group, const KernelParticles& particle
         const std::int64_t p = start + i + lane;
         double* const x = particles.position + 4 * p;
         store_aligned(x, load_aligned<Record>(x) + velocity[lane] * group.time_step);
-        velocity[lane][3] = 1.0;
+        set_lane(velocity[lane], 3, 1.0);
         store_aligned(particles.velocity + 4 * p, velocity[lane]);
       }
       transpose(velocity[0], velocity[1], velocity[2], velocity[3]);
