@@ -75,7 +75,7 @@ struct Block {
     state.bodies.resize(1);
     BodyState& body = state.bodies[0];
     body.particles = static_cast<std::int64_t>(edge) * edge * edge;
-    allocate_particles(model.materials[0], false, body.particles, body);
+    allocate_particles(model.materials[0], Body{}, body.particles, body);
     std::int64_t p = 0;
     for (int k = 0; k < edge; ++k)
       for (int j = 0; j < edge; ++j)

@@ -29,9 +29,11 @@
 #include "energy_watch.hpp"
 #include "error.hpp"
 #include "grid.hpp"
+#include "lagrangian/lagrangian.hpp"
 #include "loads/loads.hpp"
 #include "model.hpp"
 #include "plan.hpp"
+#include "planar/section.hpp"
 #include "solids.hpp"
 #include "state.hpp"
 #include "step.hpp"
@@ -257,6 +259,25 @@ std::string place_text(const double* x) {
   return buffer;
 }
 
+// What a body of a two-dimensional model cannot have.
+void require_in_plane(const Grid& grid, const ogive_body_def& def, const std::string& prefix) {
+  const auto zero = [&](const char* field, double value, const char* model) {
+    if (value != 0) refuse(prefix + field + ": must be 0 in " + model + " model, got " + number_text(value));
+  };
+  if (!grid.planar()) return;
+  zero("velocity[z]", def.velocity[2], "a two-dimensional");
+  zero("angular_velocity[x]", def.angular_velocity[0], "a two-dimensional");
+  zero("angular_velocity[y]", def.angular_velocity[1], "a two-dimensional");
+  if (!grid.axisymmetric()) return;
+  zero("velocity[x]", def.velocity[0], "an axisymmetric");
+  zero("angular_velocity[z]", def.angular_velocity[2], "an axisymmetric");
+}
+
+// Edge of a cube, or of a square section, of a particle's size.
+double particle_edge(const Grid& grid, const double* x, double volume) {
+  return grid.planar() ? std::sqrt(volume * grid.section_share_at(x[0])) : std::cbrt(volume);
+}
+
 // What a rigid body is given besides its particles.
 void make_rigid(const Grid& grid, const ogive_body_def& def, const double* volume, const std::vector<std::int64_t>& kept,
                 const std::string& prefix, Body& rules, BodyState& body) {
@@ -264,7 +285,7 @@ void make_rigid(const Grid& grid, const ogive_body_def& def, const double* volum
   Vector3 first{};
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const double* x = &body.position[4 * i];
-    const double side = std::cbrt(volume[kept[i]]);
+    const double side = particle_edge(grid, x, volume[kept[i]]);
     mass += x[3];
     rules.own_inertia += x[3] * side * side / 6;
     for (int c = 0; c < 3; ++c) first[c] += x[3] * x[c];
@@ -302,8 +323,8 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   for (int c = 0; c < 3; ++c)
     if (!std::isfinite(full.velocity[c]) || !std::isfinite(full.angular_velocity[c]) || !std::isfinite(full.angular_centre[c]))
       refuse(prefix + "velocity, angular_velocity and angular_centre must be finite");
-  if (full.formulation < 0 || full.formulation > 2)
-    refuse(prefix + "formulation: must be 0..2, got " + std::to_string(full.formulation));
+  if (full.formulation < 0 || full.formulation > 3)
+    refuse(prefix + "formulation: must be 0..3, got " + std::to_string(full.formulation));
   if (world->model.bodies.size() >= 60000) refuse(prefix + "at most 60000 bodies");
   if (count < 1) refuse(prefix + "must have at least one particle, got " + std::to_string(count));
   if (count >= (std::int64_t{1} << 31) - 64) refuse(prefix + "must have fewer than 2^31 particles");
@@ -311,11 +332,19 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   require_pointer(volume, "volume");
 
   const Grid& grid = world->model.grid;
+  require_in_plane(grid, full, prefix);
   const Material& material = world->model.materials[full.material.index];
   Body rules;
   rules.name = body_name;
   rules.material = full.material.index;
   rules.formulation = static_cast<Formulation>(full.formulation);
+  rules.distortion_limit = full.distortion_limit;
+  rules.when_distorted = static_cast<WhenDistorted>(full.when_distorted);
+  try {
+    if (rules.total_lagrangian()) world->model.validate_distortion(rules);
+  } catch (const Error& error) {
+    throw Error(error.kind(), prefix + error.what());
+  }
   std::vector<std::int64_t> kept;
   std::vector<double> share;
   kept.reserve(static_cast<std::size_t>(count));
@@ -326,6 +355,12 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
       refuse(prefix + "volume of particle " + std::to_string(p) + ": must be > 0 and finite, got " +
              std::to_string(volume[p]));
     double part = 1;
+    if (grid.planar() && x[2] != 0)
+      refuse(prefix + "position[z] of particle " + std::to_string(p) + ": must be 0 in a two-dimensional model, got " +
+             number_text(x[2]));
+    if (grid.axisymmetric() && x[0] == 0)
+      refuse(prefix + "position[x] of particle " + std::to_string(p) +
+             ": must not be 0 in an axisymmetric model, where a ring of no radius has no volume");
     for (int axis = 0; axis < 3; ++axis) {
       if (!std::isfinite(x[axis])) refuse(prefix + "position of particle " + std::to_string(p) + ": must be finite");
       for (int side = 0; side < 2; ++side) {
@@ -335,7 +370,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
           if (std::abs(inside) <= 1e-9 * grid.cell_size) part *= 0.5;
           else if (inside < 0) part = 0;
           // A rigid body that touches its image is one with it.
-          if (rules.rigid() && inside <= 0.5 * std::cbrt(volume[p]) * (1 + 1e-6)) rules.cut[axis] = 1;
+          if (rules.rigid() && inside <= 0.5 * particle_edge(grid, x, volume[p]) * (1 + 1e-6)) rules.cut[axis] = 1;
         } else if (inside < 0) {
           refuse(prefix + "must lie inside the domain; particle " + std::to_string(p) + " at " + place_text(x) +
                  " is outside the " + "xyz"[axis] + (side == 0 ? " min" : " max") + " face");
@@ -351,7 +386,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
 
   BodyState body;
   body.particles = static_cast<std::int64_t>(kept.size());
-  allocate_particles(material, rules.rigid(), body.particles, body);
+  allocate_particles(material, rules, body.particles, body);
   Vector3 momentum{};
   double mass_sum = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -373,6 +408,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   for (int c = 0; c < 3; ++c) body.totals.initial_velocity[c] = momentum[c] / mass_sum;
   body.initial_spin = vector_of(full.angular_velocity);
 
+  if (rules.rigid() && grid.axisymmetric()) rules.cut[0] = 1;  // whole rings, which move along the axis alone
   if (rules.rigid()) make_rigid(grid, full, volume, kept, prefix, rules, body);
   // Both or neither, should memory fail.
   world->model.bodies.reserve(world->model.bodies.size() + 1);
@@ -393,6 +429,11 @@ SolidDef solid_of(const ogive_solid_def* def) {
   solid.reference = vector_of(full.reference);
   solid.spacing = vector_of(full.spacing);
   return solid;
+}
+
+// Its particles in the world: in a two-dimensional model those of its section.
+ParticleCloud fill_in(const Grid& grid, const SolidDef& solid) {
+  return grid.planar() ? fill_section(grid, solid) : fill_solid(solid);
 }
 
 SurfaceDef surface_of(const SolidDef& solid) {
@@ -443,7 +484,8 @@ void refuse_overlap(const Model& model, const State& state) {
       for (int side = 0; side < 2; ++side) {
         const int index = side == 0 ? a : b;
         const BodyState& body = state.bodies[index];
-        const double inverse = 1.0 / (model.material_of(index).density * h * h * h);
+        const Grid& grid = model.grid;
+        const double density = model.material_of(index).density;
         for (std::int64_t p = 0; p < body.padded; ++p) {
           const double* x = &body.position[4 * p];
           if (x[3] == 0) continue;
@@ -458,7 +500,7 @@ void refuse_overlap(const Model& model, const State& state) {
           }
           if (outside) continue;
           for (int n = 0; n < 8; ++n) {
-            double weight = x[3] * inverse;
+            double weight = x[3] / density * (grid.planar() ? grid.section_share_at(x[0]) / (h * h) : 1 / (h * h * h));
             std::uint64_t key = 0;
             for (int c = 0; c < 3; ++c) {
               const int up = n >> c & 1;
@@ -511,10 +553,19 @@ bool has_field(const ogive_world* world, int body, const Field& field) {
   if (name == "plastic_strain") return material.plastic();
   if (name == "temperature") return material.thermal();
   if (name == "failed") return material.failure != Failure::None;
-  if (name == "deformation_gradient") return material.hyperelastic();
-  if (name == "affine_velocity") return model.numerics.affine();
+  if (name == "deformation_gradient") return !world->state.bodies[body].deformation[0].empty();
+  if (name == "affine_velocity") return !world->state.bodies[body].affine.empty();
   if (name == "force") return !world->state.bodies[body].force.empty();
   return true;
+}
+
+// Which components of a settable field must vanish in a two-dimensional model: a bit each.
+int out_of_plane(const std::string& name) {
+  if (name == "position" || name == "velocity" || name == "force") return 1 << 2;
+  if (name == "stress") return 1 << 3 | 1 << 4;  // yz xz
+  if (name == "affine_velocity") return 1 << 2 | 1 << 5 | 1 << 6 | 1 << 7 | 1 << 8;
+  if (name == "deformation_gradient") return 1 << 2 | 1 << 5 | 1 << 6 | 1 << 7;
+  return 0;
 }
 
 const Field& field_named(const ogive_world* world, ogive_body_id body, const char* name, bool to_set = false) {
@@ -529,6 +580,12 @@ const Field& field_named(const ogive_world* world, ogive_body_id body, const cha
       return field;
     }
   refuse("field: must be a name that ogive_field_name gives, got \"" + std::string(name) + "\"");
+}
+
+bool settable_in_reference(const char* name) {
+  for (const char* const settable : {"velocity", "energy", "temperature", "force"})
+    if (std::strcmp(name, settable) == 0) return true;
+  return false;
 }
 
 void check_count(const BodyState& body, const Field& field, std::int64_t count) {
@@ -562,6 +619,10 @@ void check_values(const Model& model, const Field& field, const double* values, 
       refuse("values[" + std::to_string(i) + "]: must be finite" + (positive ? " and > 0" : not_negative ? " and >= 0" : "") +
              ", got " + number_text(values[i]));
     const int axis = static_cast<int>(i % 3);
+    if (model.grid.planar() && out_of_plane(name) >> i % field.components & 1 && values[i] != 0)
+      refuse("values[" + std::to_string(i) + "]: must be 0 in a two-dimensional model, got " + number_text(values[i]));
+    if (name == "position" && axis == 0 && model.grid.axisymmetric() && !(values[i] > 0))
+      refuse("values[" + std::to_string(i) + "]: must be a radius > 0, got " + number_text(values[i]));
     if (name == "position" && (values[i] < model.grid.domain_min[axis] || values[i] > model.grid.domain_max[axis]))
       refuse("values[" + std::to_string(i) + "]: must lie inside the domain, " + number_text(model.grid.domain_min[axis]) +
              ".." + number_text(model.grid.domain_max[axis]) + ", got " + number_text(values[i]));
@@ -759,7 +820,11 @@ ogive_status ogive_world_set_log(ogive_world* world, ogive_log_callback callback
   });
 }
 
-void ogive_grid_def_init(ogive_grid_def* def, size_t size) { initialise(def, size, ogive_grid_def{}); }
+void ogive_grid_def_init(ogive_grid_def* def, size_t size) {
+  ogive_grid_def defaults{};
+  defaults.thickness = Grid{}.thickness;
+  initialise(def, size, defaults);
+}
 
 ogive_status ogive_world_set_grid(ogive_world* world, const ogive_grid_def* def) {
   return guarded(world, [&] {
@@ -772,6 +837,9 @@ ogive_status ogive_world_set_grid(ogive_world* world, const ogive_grid_def* def)
     trial.grid.domain_min = vector_of(full.domain_min);
     trial.grid.domain_max = vector_of(full.domain_max);
     for (int i = 0; i < 6; ++i) trial.grid.face[i] = static_cast<Face>(full.face[i]);
+    trial.grid.space = static_cast<WorldSpace>(full.space);
+    trial.grid.thickness = full.thickness;
+    trial.grid.lay_in_plane();
     trial.validate_grid();
     world->model.grid = trial.grid;
     world->has_grid = true;
@@ -850,9 +918,11 @@ void ogive_load_def_init(ogive_load_def* def, size_t size) {
   initialise(def, size, defaults);
 }
 
-static Vector3 load_value(const double* value) {
+static Vector3 load_value(const ogive_world* world, const double* value) {
   for (int c = 0; c < 3; ++c)
     if (!std::isfinite(value[c])) refuse("load value[" + std::to_string(c) + "]: must be finite, got " + std::to_string(value[c]));
+  if (world->model.grid.planar() && value[2] != 0)
+    refuse("load value[z]: must be 0 in a two-dimensional model, got " + number_text(value[2]));
   return {value[0], value[1], value[2]};
 }
 
@@ -872,7 +942,7 @@ ogive_status ogive_load_add(ogive_world* world, const ogive_load_def* def, ogive
     require_body_or_none(world, full.body, "load body");
     world->model.validate_load(load);
     LoadState present;
-    present.value = load_value(full.value);
+    present.value = load_value(world, full.value);
     // Both or neither, should memory fail.
     world->model.loads.reserve(world->model.loads.size() + 1);
     world->state.loads.reserve(world->state.loads.size() + 1);
@@ -893,7 +963,7 @@ ogive_status ogive_load_set(ogive_world* world, ogive_load_id load, const double
   return guarded(world, [&] {
     LoadState& present = load_of(world, load);
     require_pointer(value, "value");
-    present.value = load_value(value);
+    present.value = load_value(world, value);
   });
 }
 
@@ -940,6 +1010,7 @@ void ogive_material_def_init(ogive_material_def* def, size_t size) {
   full.reference_strain_rate = defaults.reference_strain_rate;
   full.room_temperature = defaults.room_temperature;
   full.taylor_quinney = defaults.taylor_quinney;
+  full.isotropic_fraction = defaults.isotropic_fraction;
   initialise(def, size, full);
 }
 
@@ -971,6 +1042,7 @@ static Material material_from(const std::string& name, const ogive_material_def*
   m.failure_strain = d.failure_strain;
   m.viscosity_linear = d.viscosity_linear;
   m.viscosity_quadratic = d.viscosity_quadratic;
+  m.isotropic_fraction = d.isotropic_fraction;
   try {
     m.validate();
   } catch (const Error& error) {
@@ -1005,6 +1077,7 @@ ogive_status ogive_material_change(ogive_world* world, ogive_material_id id, con
 void ogive_body_def_init(ogive_body_def* def, size_t size) {
   ogive_body_def defaults{};
   defaults.material.index = -1;
+  defaults.distortion_limit = Body{}.distortion_limit;
   initialise(def, size, defaults);
 }
 
@@ -1025,7 +1098,7 @@ void ogive_solid_def_init(ogive_solid_def* def, size_t size) {
 ogive_status ogive_body_add_solid(ogive_world* world, const char* name, const ogive_body_def* def,
                                   const ogive_solid_def* solid, ogive_body_id* id) {
   return guarded(world, [&] {
-    const ParticleCloud cloud = fill_solid(solid_of(solid));
+    const ParticleCloud cloud = fill_in(world->model.grid, solid_of(solid));
     const ogive_body_id added = add_particles(world, name, def, static_cast<std::int64_t>(cloud.volume.size()),
                                               cloud.xyz.data(), cloud.volume.data());
     world->model.bodies[added.index].surface = surface_of(solid_of(solid));
@@ -1070,7 +1143,7 @@ ogive_status ogive_solid_particles(ogive_world* world, const ogive_solid_def* so
                                    double* volume) {
   return guarded(world, [&] {
     require_pointer(count, "count");
-    const ParticleCloud cloud = fill_solid(solid_of(solid));
+    const ParticleCloud cloud = fill_in(world->model.grid, solid_of(solid));
     const std::int64_t found = static_cast<std::int64_t>(cloud.volume.size());
     if (xyz || volume) {
       if (*count < found)
@@ -1263,6 +1336,7 @@ ogive_status ogive_world_prepare(ogive_world* world) {
         for (Body& body : world->model.bodies) body.surface = {};  // no rule asks for it
       refuse_overlap(world->model, world->state);
       select_loaded_particles(world->model, world->state);
+      for (const LoadState& load : world->state.loads) load_value(world, load.value.data());  // the grid may be newer
       for (std::size_t i = 0; i < world->model.loads.size(); ++i)
         if (world->model.loads[i].kind == LoadKind::Traction && !(world->state.loads[i].mass > 0))
           refuse("load " + std::to_string(i) +
@@ -1414,16 +1488,18 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     for (int c = 0; c < 3; ++c) {
       full.boundary_impulse[c] = state.ledger.boundary_impulse[c];
       full.external_impulse[c] = state.ledger.external_impulse[c];
-      full.contact_couple[c] = state.ledger.contact_couple[c];
+      full.contact_couple[c] = world->model.grid.axisymmetric() ? 0 : state.ledger.contact_couple[c];
     }
     full.friction_dissipation = state.ledger.friction_dissipation;
     full.transfer_dissipation = state.ledger.transfer_dissipation;
     full.contact_work = state.ledger.contact_work;
     full.boundary_work = state.ledger.boundary_work;
     full.external_work = state.ledger.external_work;
+    full.contact_dissipation = state.ledger.contact_dissipation;
     full.prescribed_work = state.ledger.prescribed_work;
     full.initial_total = state.ledger.initial_total;
     full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation +
+                 full.contact_dissipation +
                  full.transfer_dissipation - full.external_work - full.prescribed_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
@@ -1480,13 +1556,16 @@ ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id id, o
       full.momentum[c] = audit.momentum[c];
       full.centre[c] = audit.mass > 0 ? audit.first_moment[c] / audit.mass : 0;
       full.velocity[c] = audit.mass > 0 ? audit.momentum[c] / audit.mass : 0;
+      if (c == 0 && world->model.grid.axisymmetric()) full.centre[c] = full.velocity[c] = 0;  // of the whole body
       full.speed += full.velocity[c] * full.velocity[c];
       full.initial_speed += totals.initial_velocity[c] * totals.initial_velocity[c];
       full.contact_force[c] = totals.contact_force[c];
       full.lower[c] = audit.lower[c];
       full.upper[c] = audit.upper[c];
     }
-    const Vector3 about_centre = minus(audit.angular_momentum, cross(vector_of(full.centre), audit.momentum));
+    const Vector3 about_centre = world->model.grid.axisymmetric()
+                                     ? Vector3{}
+                                     : minus(audit.angular_momentum, cross(vector_of(full.centre), audit.momentum));
     for (int c = 0; c < 3; ++c) {
       full.angular_momentum[c] = about_centre[c];
       full.angular_velocity[c] = body.rigid.spin[c];
@@ -1495,6 +1574,9 @@ ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id id, o
     full.initial_speed = std::sqrt(full.initial_speed);
     full.maximum_plastic_strain = audit.maximum_plastic_strain;
     full.maximum_temperature = audit.maximum_temperature;
+    const Formulation given = world->model.bodies[id.index].formulation;
+    const bool updated = given == Formulation::TotalLagrangian && !body.lagrangian;
+    full.formulation = static_cast<std::int32_t>(updated ? Formulation::Deformable : given);
     deliver(full, result, "result");
   });
 }
@@ -1552,6 +1634,10 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
     if (world->model.bodies[id.index].rigid() && std::strcmp(name, "force") != 0)
       refuse("field \"" + std::string(name) + "\": cannot be set, the body is rigid; only \"force\" can");
     if (!field.settable) refuse("field \"" + std::string(name) + "\": cannot be set");
+    const bool lagrangian = world->state.bodies[id.index].lagrangian;
+    if (lagrangian && !settable_in_reference(field.name))
+      refuse("field \"" + std::string(name) + "\": cannot be set, the body is total Lagrangian and has it from its nodes; "
+             "velocity, energy, temperature and force can");
     BodyState& body = const_cast<BodyState&>(body_of(world, id));
     check_count(body, field, count);
     if (count > 0) require_pointer(values, "values");
@@ -1589,6 +1675,7 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
             material.yield_stress_at(body.plastic_strain[p], material.thermal() ? body.temperature[p] : 0);
       }
     });
+    if (field_name == "velocity" && lagrangian) take_velocities(world->model, world->state, world->workspace, id.index);
     if (moves_energy) world->state.energy_watch.from_host += total_energy(world->model, world->state) - energy_before;
     if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
     if (field_name == "velocity") {

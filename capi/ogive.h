@@ -123,6 +123,20 @@ enum {
   OGIVE_FACE_FIXED = 2     /* velocity zero */
 };
 
+/* Dimensions of a world. In a two-dimensional one all lies and moves in the plane z = 0; the grid has one layer of nodes there,
+ * and z of the domain and its faces are not used. A built-in solid is the section of it with the plane, a particle's volume is
+ * that of the body it stands for: sums (mass, momentum along y, energies, forces) are those of that body. Contact by surfaces
+ * (OGIVE_DETECTION_SURFACE) is for three dimensions. */
+enum {
+  OGIVE_SPACE_THREE_DIMENSIONAL = 0,
+  OGIVE_SPACE_PLANE_STRAIN = 1, /* no strain along z; volumes are those of `thickness` along z */
+  OGIVE_SPACE_AXISYMMETRIC = 2  /* bodies of revolution about y, without twist: x is the radius, domain_min[0] must be 0 and the
+                                   face x min is a symmetry face; volumes are those of whole rings. The x components of momenta,
+                                   impulses and forces are sums of radial ones (those of the whole body vanish), with what hoop
+                                   stress gives in boundary_impulse; centre, velocity and speed of a body are the whole
+                                   body's, and angular momentum is 0. Rigid bodies move along y alone */
+};
+
 /* The background grid. */
 typedef struct ogive_grid_def {
   uint32_t struct_size;
@@ -132,6 +146,9 @@ typedef struct ogive_grid_def {
   double domain_max[3]; /* [L] upper corner, > domain_min. Where the face is symmetry or fixed, (max - min) must be a
                            whole number of cells (to 1e-6 of a cell) so that the face holds nodes. No default */
   int32_t face[6];      /* OGIVE_FACE_*: x min, x max, y min, y max, z min, z max. Default free */
+  int32_t space;        /* OGIVE_SPACE_*. Default three-dimensional */
+  int32_t reserved1;
+  double thickness;     /* [L] > 0, with plane strain: of what is modelled along z. Default 1 */
 } ogive_grid_def;
 OGIVE_API void ogive_grid_def_init(ogive_grid_def* def, size_t size);
 /* Before the bodies; another call replaces the grid. */
@@ -250,7 +267,13 @@ enum {
                                      so eos must be linear and bulk modulus K and shear modulus G come from E and nu
                                      or from bulk_modulus and shear_modulus */
   OGIVE_STRENGTH_J2_POWER = 2,    /* von Mises, yield stress A + B eps_p^n, Huang et al. 2010 Eq. (37) */
-  OGIVE_STRENGTH_JOHNSON_COOK = 3 /* (A + B eps_p^n)(1 + C ln eps_rate*)(1 - T*^m), Huang et al. 2010 Eq. (39) */
+  OGIVE_STRENGTH_JOHNSON_COOK = 3, /* (A + B eps_p^n)(1 + C ln eps_rate*)(1 - T*^m), Huang et al. 2010 Eq. (39) */
+  /* Von Mises, yield stress A + c B eps_p and Prager's back stress of modulus (1 - c) B, c = isotropic_fraction; n must be 1 and
+   * eos linear. Both keep the deformation gradient and a plastic strain and back stress tensor. */
+  OGIVE_STRENGTH_J2_MIXED = 4,    /* Lee et al. 2005 (2.1)-(2.13), in second Piola-Kirchhoff stress and Green-Lagrange strain:
+                                     for moderate strains, large rotations */
+  OGIVE_STRENGTH_J2_MULTIPLICATIVE = 5 /* F = F_e F_p with logarithmic elastic strain (principal elastic stretches within
+                                     1/1.5..1.5), for large strains */
 };
 /* Pressure. */
 enum {
@@ -295,6 +318,8 @@ typedef struct ogive_material_def {
   /* Bulk viscosity q = rho h |d| (c_q h |d| + c_l c) where the volume shrinks at rate d. Default 0: no work is done. */
   double viscosity_linear;     /* c_l [-] >= 0 */
   double viscosity_quadratic;  /* c_q [-] >= 0 */
+  double isotropic_fraction;   /* c [-] 0..1: part of the hardening that is isotropic, the rest is kinematic; J2 mixed and
+                                  multiplicative. Default 1 */
 } ogive_material_def;
 OGIVE_API void ogive_material_def_init(ogive_material_def* def, size_t size);
 /* name: 1..63 characters, unique among materials; used in messages. */
@@ -308,9 +333,20 @@ enum {
   /* A rigid body has no strain, stress or failure and meets others by contact alone (domain faces and clamps do not hold
    * it; use walls). A symmetry face that cuts or touches it makes it one with its mirror images. */
   OGIVE_FORMULATION_RIGID_FREE = 1,      /* six degrees of freedom; mass, centre and inertia from its particles */
-  OGIVE_FORMULATION_RIGID_PRESCRIBED = 2 /* infinite mass in contact; moves with velocity, and turns with angular_velocity
+  OGIVE_FORMULATION_RIGID_PRESCRIBED = 2, /* infinite mass in contact; moves with velocity, and turns with angular_velocity
                                             about the point that is at angular_centre at time 0 and moves with velocity;
                                             or as ogive_body_set_motion says */
+  /* Nodes and shape functions of the body as it is when the world is prepared, Lee et al. 2005: no errors of particles that
+   * cross cells, no numerical fracture, less work a step. For elastic bodies and moderate plastic deformation. Any material.
+   * Clamps and prescribed velocities hold the particles that lay in their region at the beginning. The body is not cut by
+   * the domain's free faces; it is removed once all of it is outside. */
+  OGIVE_FORMULATION_TOTAL_LAGRANGIAN = 3
+};
+/* What becomes of a total Lagrangian body once some particle is distorted beyond the body's limit. */
+enum {
+  OGIVE_DISTORTED_UPDATE = 0, /* from the next step on it is updated Lagrangian (deformable); mass and momentum stay, the kinetic
+                                 energy that its particles do not see is booked as transfer_dissipation */
+  OGIVE_DISTORTED_STOP = 1    /* the step is OGIVE_ERROR_NUMERICAL */
 };
 /* What a body is made of and how it moves at first. */
 typedef struct ogive_body_def {
@@ -321,6 +357,11 @@ typedef struct ogive_body_def {
   double angular_centre[3];   /* [L]. Default 0 */
   int32_t formulation;        /* OGIVE_FORMULATION_*. Default deformable */
   int32_t reserved0;
+  /* Total Lagrangian bodies. The distortion of a particle is |F| |F^-1| / 3 with the Frobenius norm: 1 undeformed, 3.8 stretched
+   * to four times its length at constant volume. */
+  double distortion_limit;    /* [-] > 1, infinity allowed. Default 10 */
+  int32_t when_distorted;     /* OGIVE_DISTORTED_*. Default update */
+  int32_t reserved1;
 } ogive_body_def;
 OGIVE_API void ogive_body_def_init(ogive_body_def* def, size_t size);
 
@@ -364,10 +405,13 @@ typedef struct ogive_solid_def {
   double spacing[3];    /* [L] > 0, in the solid's own axes */
 } ogive_solid_def;
 OGIVE_API void ogive_solid_def_init(ogive_solid_def* def, size_t size);
-/* A body filled from a built-in solid; particle volumes sum to the exact volume of the solid. */
+/* A body filled from a built-in solid; particle volumes sum to the exact volume of the solid. In a two-dimensional world it is
+ * the solid's section with z = 0: its centre and one of its axes must lie there, the other axes along or across z; particles
+ * lie on the lattice of its axes in the plane. In an axisymmetric one the section turns about y: it must lie at x >= 0 or be
+ * symmetric about x = 0, and the volumes sum to that of the body of revolution. A polar lattice is then a Cartesian one. */
 OGIVE_API ogive_status ogive_body_add_solid(ogive_world* world, const char* name, const ogive_body_def* def,
                                             const ogive_solid_def* solid, ogive_body_id* id);
-/* The particles such a body would get. First call with xyz = volume = NULL to learn *count, then with room for it. */
+/* The particles such a body would get in the world as it is. First call with xyz = volume = NULL to learn *count, then with room for it. */
 OGIVE_API ogive_status ogive_solid_particles(ogive_world* world, const ogive_solid_def* solid, int64_t* count, double* xyz,
                                              double* volume);
 
@@ -533,7 +577,7 @@ OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_prog
 
 /* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
  *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation
- *            + transfer_dissipation - external_work - prescribed_work
+ *            + transfer_dissipation + contact_dissipation - external_work - prescribed_work
  *   residual = total - initial_total; what no term accounts for
  * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
  * Particles lose less than that (they carry motion that the grid does not see), so these are indicators and part of no
@@ -575,6 +619,9 @@ typedef struct ogive_ledger {
                                   guides so far + what the host put in. 0: it never grew */
   double energy_growth_time;   /* [T] when that was */
   double energy_warning_time;  /* [T] when growth first passed energy_warning; -1: never */
+  double contact_dissipation;  /* kinetic energy that contact took, beside friction, where total Lagrangian bodies meet each other,
+                                  rigid bodies or walls: the impact of the layer of nodes that meets. There it is exactly
+                                  known; what contact takes from other bodies is in the residual */
 } ogive_ledger;
 /* After ogive_world_prepare; a pass over all particles. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);
@@ -612,6 +659,8 @@ typedef struct ogive_body_result {
   double maximum_temperature;   /* [K], 0 where none is kept */
   double angular_momentum[3];   /* [M L2/T] about `centre` */
   double angular_velocity[3];   /* [1/T] of a rigid body, otherwise 0 */
+  int32_t formulation;          /* OGIVE_FORMULATION_* now: a total Lagrangian body that was too distorted is deformable */
+  int32_t reserved1;
 } ogive_body_result;
 /* After ogive_world_prepare; a pass over the particles of the body. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id body, ogive_body_result* result);
@@ -660,7 +709,8 @@ OGIVE_API ogive_status ogive_field_get(const ogive_world* world, ogive_body_id b
 /* Sets position (inside the domain), velocity, affine_velocity, stress, energy, plastic_strain (>= 0), temperature (>= 0),
  * volume_ratio (> 0), deformation_gradient (determinant > 0) or force in the same layout; all values finite. Setting one leaves
  * the others as they are: who sets velocity may want to set affine_velocity too. A force acts in every step until it is set
- * anew; its impulse and work are part of the ledger's external ones. */
+ * anew; its impulse and work are part of the ledger's external ones. Of a total Lagrangian body velocity (its nodes take the
+ * mean of what their particles have), energy, temperature and force can be set. */
 OGIVE_API ogive_status ogive_field_set(ogive_world* world, ogive_body_id body, const char* name, const double* values,
                                        int64_t count);
 

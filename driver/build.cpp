@@ -77,6 +77,8 @@ class Builder {
     assign(def.domain_min, scene_.grid.lower);
     assign(def.domain_max, scene_.grid.upper);
     std::copy(scene_.grid.faces.begin(), scene_.grid.faces.end(), def.face);
+    def.space = scene_.grid.space;
+    assign(def.thickness, scene_.grid.thickness);
     require(ogive_world_set_grid(world_, &def), "grid");
   }
 
@@ -124,6 +126,7 @@ class Builder {
     assign(def.failure_strain, material.failure_strain);
     assign(def.viscosity_linear, material.viscosity_linear);
     assign(def.viscosity_quadratic, material.viscosity_quadratic);
+    assign(def.isotropic_fraction, material.isotropic_fraction);
     return def;
   }
 
@@ -145,6 +148,8 @@ class Builder {
     assign(def.angular_velocity, body.angular_velocity);
     assign(def.angular_centre, body.angular_centre);
     assign(def.formulation, body.formulation);
+    assign(def.distortion_limit, body.distortion_limit);
+    assign(def.when_distorted, body.when_distorted);
     ogive_body_id id{-1};
     if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
       ogive_solid_def shape;
@@ -189,7 +194,7 @@ class Builder {
   }
 
   FilledMesh mesh_of(const BodyScene& body, const std::string& path) {
-    FilledMesh filled = fill_mesh(std::get<MeshShape>(body.shape), scene_.place(path + ".mesh"));
+    FilledMesh filled = fill_mesh(std::get<MeshShape>(body.shape), scene_.grid, scene_.place(path + ".mesh"));
     if (filled.repaired) notes_.push_back("mesh of body " + body.name + ":\n" + filled.report);
     return filled;
   }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "failure.hpp"
+#include "mesh_section.hpp"
 #include "world.hpp"
 
 namespace driver {
@@ -27,7 +28,13 @@ void require_mesh_ok(ogive_status status, const Mesh& mesh, const std::string& p
 
 }  // namespace
 
-FilledMesh fill_mesh(const MeshShape& shape, const std::string& place) {
+FilledMesh fill_mesh(const MeshShape& shape, const GridScene& grid, const std::string& place) {
+  const bool planar = grid.space != OGIVE_SPACE_THREE_DIMENSIONAL;
+  const MeshShape usual;
+  if (planar && (shape.lattice_axis != usual.lattice_axis || shape.lattice_reference != usual.lattice_reference ||
+                 shape.lattice_origin != usual.lattice_origin))
+    throw Failure(kExitInput, place + ": lattice_axis, lattice_reference and lattice_origin are not for two-dimensional " +
+                                  "scenes, whose lattice lies along x and y from the mesh's position on");
   ogive_mesh* created = nullptr;
   const ogive_status made = ogive_mesh_create(&created);
   const Mesh mesh(created);
@@ -59,13 +66,15 @@ FilledMesh fill_mesh(const MeshShape& shape, const std::string& place) {
   std::copy_n(shape.axis.data(), 3, fill.axis);
   std::copy_n(shape.reference.data(), 3, fill.reference);
   std::copy_n(shape.position.data(), 3, fill.position);
-  int64_t count = 0;
-  require_mesh_ok(ogive_mesh_voxelise(mesh.get(), &fill, &count, nullptr, nullptr), mesh, place);
-  filled.particles.positions.resize(static_cast<size_t>(3 * count));
-  filled.particles.volumes.resize(static_cast<size_t>(count));
-  require_mesh_ok(ogive_mesh_voxelise(mesh.get(), &fill, &count, filled.particles.positions.data(),
-                                      filled.particles.volumes.data()),
-                  mesh, place);
+  if (!planar) {
+    int64_t count = 0;
+    require_mesh_ok(ogive_mesh_voxelise(mesh.get(), &fill, &count, nullptr, nullptr), mesh, place);
+    filled.particles.positions.resize(static_cast<size_t>(3 * count));
+    filled.particles.volumes.resize(static_cast<size_t>(count));
+    require_mesh_ok(ogive_mesh_voxelise(mesh.get(), &fill, &count, filled.particles.positions.data(),
+                                        filled.particles.volumes.data()),
+                    mesh, place);
+  }
   int64_t vertices = 0, triangles = 0;
   require_mesh_ok(ogive_mesh_surface(mesh.get(), &fill, &vertices, &triangles, nullptr, nullptr), mesh, place);
   filled.vertices.resize(static_cast<size_t>(3 * vertices));
@@ -73,6 +82,13 @@ FilledMesh fill_mesh(const MeshShape& shape, const std::string& place) {
   require_mesh_ok(ogive_mesh_surface(mesh.get(), &fill, &vertices, &triangles, filled.vertices.data(),
                                      filled.corners.data()),
                   mesh, place);
+  if (planar) {
+    ogive_grid_def defaults;
+    ogive_grid_def_init(&defaults, sizeof defaults);
+    filled.particles = fill_mesh_section(
+        filled.vertices, filled.corners, {shape.position[0], shape.position[1]}, {shape.spacing[0], shape.spacing[1]},
+        {grid.space == OGIVE_SPACE_AXISYMMETRIC, grid.thickness.value_or(defaults.thickness)}, place);
+  }
   return filled;
 }
 

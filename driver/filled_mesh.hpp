@@ -17,7 +17,8 @@ struct FilledMesh {
   bool repaired = false;
 };
 
-/// `place` begins every message. Throws Failure(kExitInput) for whatever is wrong with the mesh.
-FilledMesh fill_mesh(const MeshShape& shape, const std::string& place);
+/// In a two-dimensional scene the section with z = 0. `place` begins every message. Throws Failure(kExitInput) for whatever is
+/// wrong with the mesh.
+FilledMesh fill_mesh(const MeshShape& shape, const GridScene& grid, const std::string& place);
 
 }  // namespace driver

@@ -25,7 +25,7 @@ void require_file_ok(ogive_status status, const std::string& file, const std::st
 }  // namespace
 
 ExitCode voxelise(const MeshShape& mesh, const std::string& output_file) {
-  const FilledMesh filled = fill_mesh(mesh, "voxelise");
+  const FilledMesh filled = fill_mesh(mesh, GridScene{}, "voxelise");
   write_particle_csv(output_file, filled.particles);
   const std::vector<double>& volumes = filled.particles.volumes;
   std::printf("%s\n%s particles of total volume %s in %s\n", filled.report.c_str(),

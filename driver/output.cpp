@@ -103,6 +103,7 @@ void add_ledger(Row& row, const ogive_ledger& ledger) {
   row.add("boundary_work", ledger.boundary_work);
   row.add("external_work", ledger.external_work);
   row.add("prescribed_work", ledger.prescribed_work);
+  row.add("contact_dissipation", ledger.contact_dissipation);
   row.add("total", ledger.total);
   row.add("residual", ledger.residual);
   row.add("residual_relative", ledger.residual_relative);
@@ -181,6 +182,7 @@ Json energy_json(const ogive_ledger& ledger) {
   json["boundary_work"] = ledger.boundary_work;
   json["external_work"] = ledger.external_work;
   json["prescribed_work"] = ledger.prescribed_work;
+  json["contact_dissipation"] = ledger.contact_dissipation;
   json["total"] = ledger.total;
   json["initial_total"] = ledger.initial_total;
   json["residual"] = ledger.residual;

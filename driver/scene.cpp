@@ -91,12 +91,22 @@ Units read_units(const Section& root) {
 }
 
 GridScene read_grid(const Section& root) {
-  const Section section = root.table("grid", Names{"cell_size", "lower", "upper", "faces"});
+  const Section section = root.table("grid", Names{"cell_size", "lower", "upper", "faces", "space", "thickness"});
   GridScene grid;
+  grid.space = section
+                   .optional_choice("space", {{"three_dimensional", OGIVE_SPACE_THREE_DIMENSIONAL},
+                                              {"plane_strain", OGIVE_SPACE_PLANE_STRAIN},
+                                              {"axisymmetric", OGIVE_SPACE_AXISYMMETRIC}})
+                   .value_or(OGIVE_SPACE_THREE_DIMENSIONAL);
+  grid.thickness = section.optional_number("thickness", kPositive);
+  if (grid.thickness && grid.space != OGIVE_SPACE_PLANE_STRAIN) {
+    section.refuse("thickness", "needs space = \"plane_strain\"");
+  }
   grid.cell_size = section.number("cell_size", kPositive);
   grid.lower = section.vector("lower");
   grid.upper = section.vector("upper");
-  for (size_t axis = 0; axis < 3; ++axis) {
+  const size_t axes = grid.space == OGIVE_SPACE_THREE_DIMENSIONAL ? 3 : 2;
+  for (size_t axis = 0; axis < axes; ++axis) {
     if (grid.upper[axis] > grid.lower[axis]) continue;
     section.refuse(child_path("upper", axis), "must be > grid." + child_path("lower", axis) + " (" +
                                                   shortest(grid.lower[axis]) + "), got " + shortest(grid.upper[axis]));
@@ -272,7 +282,7 @@ void read_rate_and_heat(const Section& law, MaterialScene& material) {
 }
 
 MaterialScene read_material(const Section& materials, const std::string& name) {
-  const Names strengths = {"elastic", "neo_hookean", "j2_power", "johnson_cook"};
+  const Names strengths = {"elastic", "neo_hookean", "j2_power", "johnson_cook", "j2_mixed", "j2_multiplicative"};
   const Section section =
       materials.table(name, Names{"density"} + strengths + Names{"mie_gruneisen", "failure", "viscosity"});
   MaterialScene material;
@@ -290,6 +300,13 @@ MaterialScene read_material(const Section& materials, const std::string& name) {
   if (section.has("elastic") || section.has("neo_hookean")) {
     material.strength = section.has("elastic") ? OGIVE_STRENGTH_ELASTIC : OGIVE_STRENGTH_NEO_HOOKEAN;
     read_elastic_constants(section.table(given[0], kElasticKeys), material);
+  } else if (section.has("j2_mixed") || section.has("j2_multiplicative")) {
+    material.strength = section.has("j2_mixed") ? OGIVE_STRENGTH_J2_MIXED : OGIVE_STRENGTH_J2_MULTIPLICATIVE;
+    const Section law = section.table(given[0], kElasticKeys + Names{"yield_stress", "H", "c"});
+    read_elastic_constants(law, material);
+    material.yield_stress = law.number("yield_stress", kPositive);
+    material.hardening_modulus = law.optional_number("H", kNotNegative);
+    material.isotropic_fraction = law.optional_number("c", kZeroToOne);
   } else {
     const bool johnson_cook = section.has("johnson_cook");
     material.strength = johnson_cook ? OGIVE_STRENGTH_JOHNSON_COOK : OGIVE_STRENGTH_J2_POWER;
@@ -301,8 +318,8 @@ MaterialScene read_material(const Section& materials, const std::string& name) {
   }
 
   if (const auto eos = section.optional_table("mie_gruneisen", Names{"c0", "s", "gamma0"})) {
-    if (material.strength == OGIVE_STRENGTH_NEO_HOOKEAN) {
-      section.refuse("mie_gruneisen", "cannot be with neo_hookean, which brings its own pressure");
+    if (section.has("neo_hookean") || section.has("j2_mixed") || section.has("j2_multiplicative")) {
+      section.refuse("mie_gruneisen", "cannot be with " + given[0] + ", which brings its own pressure");
     }
     material.equation_of_state = OGIVE_EOS_MIE_GRUNEISEN;
     material.eos_sound_speed = eos->number("c0", kPositive);
@@ -310,7 +327,7 @@ MaterialScene read_material(const Section& materials, const std::string& name) {
     material.gruneisen = eos->number("gamma0", kNotNegative);
   }
   if (const auto failure = section.optional_table("failure", Names{"plastic_strain"})) {
-    if (material.strength == OGIVE_STRENGTH_ELASTIC || material.strength == OGIVE_STRENGTH_NEO_HOOKEAN) {
+    if (!section.has("j2_power") && !section.has("johnson_cook")) {
       section.refuse("failure", "needs a law with plastic strain (j2_power, johnson_cook), got " + given[0]);
     }
     material.failure_strain = failure->number("plastic_strain", kPositive);
@@ -397,7 +414,8 @@ MeshShape read_mesh(const Section& body, const std::filesystem::path& scene_file
 BodyScene read_body(const Section& bodies, const std::string& name, const Names& materials,
                     const std::filesystem::path& scene_file) {
   const Names shapes = {"mesh", "box", "cylinder", "sphere", "ogive_rod", "particles"};
-  const Names motion = {"material", "velocity", "angular_velocity", "angular_centre", "formulation", "motion"};
+  const Names motion = {"material", "velocity", "angular_velocity", "angular_centre", "formulation", "motion",
+                        "distortion_limit", "when_distorted"};
   const Names mesh_keys = {"axis",         "reference",         "position",      "scale",
                            "lattice_axis", "lattice_reference", "lattice_origin"};
   // The full list first, so that a slip in the shape's own key is not taken for a missing shape.
@@ -431,7 +449,17 @@ BodyScene read_body(const Section& bodies, const std::string& name, const Names&
   body.formulation =
       any_shape.optional_choice("formulation", {{"deformable", OGIVE_FORMULATION_DEFORMABLE},
                                                 {"rigid", OGIVE_FORMULATION_RIGID_FREE},
-                                                {"rigid_prescribed", OGIVE_FORMULATION_RIGID_PRESCRIBED}});
+                                                {"rigid_prescribed", OGIVE_FORMULATION_RIGID_PRESCRIBED},
+                                                {"total_lagrangian", OGIVE_FORMULATION_TOTAL_LAGRANGIAN}});
+  for (const std::string key : {"distortion_limit", "when_distorted"}) {
+    if (any_shape.has(key) && body.formulation != OGIVE_FORMULATION_TOTAL_LAGRANGIAN) {
+      any_shape.refuse(key, "needs formulation = \"total_lagrangian\"");
+    }
+  }
+  const Range above_one = {[](double value) { return value > 1; }, "> 1"};
+  body.distortion_limit = any_shape.optional_number("distortion_limit", above_one);
+  body.when_distorted = any_shape.optional_choice(
+      "when_distorted", {{"update", OGIVE_DISTORTED_UPDATE}, {"stop", OGIVE_DISTORTED_STOP}});
   for (const Section& knot : any_shape.tables("motion", Names{"time", "velocity", "angular_velocity"})) {
     if (body.formulation != OGIVE_FORMULATION_RIGID_PRESCRIBED) {
       any_shape.refuse("motion", "needs formulation = \"rigid_prescribed\"");

@@ -23,6 +23,8 @@ struct GridScene {
   double cell_size = 0;
   Vector3 lower{}, upper{};
   std::array<int32_t, 6> faces{};
+  int32_t space = 0;
+  std::optional<double> thickness;
 
   bool operator==(const GridScene&) const = default;
 };
@@ -80,6 +82,7 @@ struct MaterialScene {
   std::optional<double> eos_sound_speed, eos_slope, gruneisen;
   std::optional<double> failure_strain;
   std::optional<double> viscosity_linear, viscosity_quadratic;
+  std::optional<double> isotropic_fraction;
 
   bool operator==(const MaterialScene&) const = default;
 };
@@ -127,6 +130,8 @@ struct BodyScene {
   std::string material;
   std::optional<int32_t> formulation;
   std::vector<MotionScene> motion;  // empty: a constant one
+  std::optional<double> distortion_limit;
+  std::optional<int32_t> when_distorted;
   Vector3 velocity{}, angular_velocity{}, angular_centre{};
   std::variant<MeshShape, SolidShape, ParticleFileShape> shape;
 

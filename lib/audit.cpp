@@ -79,13 +79,18 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
       audit.first_moment[c] += part.first_moment[c];
     }
   }
+  if (body.lagrangian) {
+    audit.kinetic = body.reference.kinetic;
+    audit.angular_momentum = body.reference.angular_momentum;
+  }
+  if (model.grid.axisymmetric()) audit.angular_momentum = {};  // of the whole body
   return audit;
 }
 
 double total_energy(const Model& model, const State& state) {
   double total =
-      state.ledger.friction_dissipation + state.ledger.transfer_dissipation - state.ledger.external_work -
-      state.ledger.prescribed_work;
+      state.ledger.friction_dissipation + state.ledger.transfer_dissipation + state.ledger.contact_dissipation -
+      state.ledger.external_work - state.ledger.prescribed_work;
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
     const BodyAudit audit = audit_body(model, state, b);
     const BodyTotals& totals = state.bodies[b].totals;
@@ -113,7 +118,8 @@ void check_stop(const Model& model, State& state) {
   double mass = 0;
   for (const Group& group : body.groups)
     for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) mass += body.position[4 * p + 3];
-  const Vector3 momentum = body_momentum(body);
+  Vector3 momentum = body_momentum(body);
+  if (model.grid.axisymmetric()) momentum[0] = 0;  // of the whole body
   const Vector3& initial = body.totals.initial_velocity;
   double speed = 0, along = 0, initial_speed = 0;
   for (int c = 0; c < 3; ++c) {

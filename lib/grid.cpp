@@ -10,6 +10,7 @@
 #include "audit.hpp"
 #include "breakdown.hpp"
 #include "error.hpp"
+#include "parallel.hpp"
 
 namespace ogive {
 namespace {
@@ -77,6 +78,9 @@ bool has_left(const Model& model, const State& state, int body, std::int64_t par
     if (!std::isfinite(x[axis]))
       throw breakdown(model, state, body, particle, "its position is not finite",
                       "the time step is too large or the material data are wrong");
+    if (axis == 0 && grid.axisymmetric() && !(x[0] > 0))
+      throw breakdown(model, state, body, particle, "its radius is not positive",
+                      "it moves by more than its radius in a step: a smaller time_step_factor may help");
     for (int side = 0; side < 2; ++side) {
       const double beyond = side == 0 ? grid.domain_min[axis] - x[axis] : x[axis] - grid.domain_max[axis];
       if (beyond <= 0) continue;
@@ -149,18 +153,18 @@ void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Aligned
     for (std::int64_t begin = 0; begin < padded; begin += most) {
       const std::int64_t end = std::min(begin + most, padded);
       Value* const piece = waiting + size * (begin % length);
-#pragma omp parallel for num_threads(workspace.threads) schedule(static) if (workspace.threads > 1)
-      for (std::int64_t i = begin; i < end; ++i)
+      for_each_in_parts(workspace.threads, begin, end, [&](std::int64_t i) {
         for (int c = 0; c < size; ++c)
           piece[size * (i - begin) + c] = values[stride * static_cast<std::int64_t>(source[i]) + c];
+      });
       // What lies a reach behind has been read by all that take it.
       const std::int64_t complete = end == padded ? padded : std::max<std::int64_t>(0, end + most - length);
       for (; written < complete; written = std::min(written + most, padded)) {
         const std::int64_t last = std::min(written + most, padded);
         const Value* const taken = waiting + size * (written % length);
-#pragma omp parallel for num_threads(workspace.threads) schedule(static) if (workspace.threads > 1)
-        for (std::int64_t i = written; i < last; ++i)
+        for_each_in_parts(workspace.threads, written, last, [&](std::int64_t i) {
           for (int c = 0; c < size; ++c) values[stride * i + c] = taken[size * (i - written) + c];
+        });
       }
     }
   };
@@ -182,7 +186,7 @@ void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Aligned
 }
 
 void bin_body(const Model& model, State& state, Workspace& workspace, int index) {
-  BodyState& body = state.bodies[index];
+  BodyState& body = workspace.particles_of(state, index);
   const Grid& grid = model.grid;
   const double inverse_cell = 1.0 / grid.cell_size;
 
@@ -198,7 +202,8 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   auto take = [&](std::int64_t p) {
     const double* x = &body.position[4 * p];
     if (has_left(model, state, index, p)) {
-      book_departure(model.material_of(index), grid.cell_size, body, p, totals);
+      // A total Lagrangian body stays whole: what lies outside is only out of reach of contact.
+      if (!state.bodies[index].lagrangian) book_departure(model.material_of(index), grid.cell_size, body, p, totals);
       return;
     }
     std::array<std::int32_t, 3> cell, block;
@@ -302,18 +307,18 @@ void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable&
                     : static_cast<std::int32_t>(std::lround((grid.domain_max[axis] - grid.domain_min[axis]) / grid.cell_size));
       const std::int32_t ghost = side == 0 ? plane - 1 : plane + 1;
       const std::int32_t image = 2 * plane - ghost;
-      const auto visit_layer = [&](std::int32_t coordinate, bool rigid, auto&& visit) {
+      const auto visit_layer = [&](std::int32_t coordinate, bool guided, auto&& visit) {
         for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
-          if ((workspace.slots[s].rigid >= 0) != rigid) continue;
+          if (workspace.slots[s].guided() != guided) continue;
           if (workspace.slots[s].block[axis] != floor_div4(coordinate)) continue;
-          for (int n = 0; n < block_nodes; ++n)
+          for (int n = 0; n < workspace.nodes_in_use; ++n)
             if (((n >> (2 * axis)) & 3) == (coordinate & 3)) visit(s, n);
         }
       };
-      for (const bool rigid : {false, true}) {
-        visit_layer(plane, rigid,
+      for (const bool guided : {false, true}) {
+        visit_layer(plane, guided,
                     [&](std::size_t s, int n) { face.plane.push_back(static_cast<std::int64_t>(s) * block_nodes + n); });
-        if (!rigid) face.moving_plane = face.plane.size();
+        if (!guided) face.moving_plane = face.plane.size();
       }
       const auto mirror = [&](std::size_t s, int n) {
         std::array<std::int32_t, 3> block = workspace.slots[s].block;
@@ -326,9 +331,9 @@ void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable&
         pair.image = static_cast<std::int64_t>(other) * block_nodes + node;
         face.pairs.push_back(pair);
       };
-      for (const bool rigid : {false, true}) {
-        visit_layer(ghost, rigid, mirror);
-        if (!rigid) face.moving_pairs = face.pairs.size();
+      for (const bool guided : {false, true}) {
+        visit_layer(ghost, guided, mirror);
+        if (!guided) face.moving_pairs = face.pairs.size();
       }
       workspace.faces.push_back(std::move(face));
     }
@@ -339,9 +344,9 @@ template <class Visit>
 void for_nodes_in(const Model& model, const Workspace& workspace, const Space& space, int body, Visit&& visit) {
   for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
     const Slot& slot = workspace.slots[s];
-    if (slot.rigid >= 0) continue;  // its motion is prescribed or free
+    if (slot.guided()) continue;  // what moves it also holds it
     if (body >= 0 && slot.field != model.field_of(body)) continue;
-    for (int n = 0; n < block_nodes; ++n) {
+    for (int n = 0; n < workspace.nodes_in_use; ++n) {
       Vector3 x;
       for (int axis = 0; axis < 3; ++axis)
         x[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * slot.block[axis] + ((n >> (2 * axis)) & 3));
@@ -379,7 +384,7 @@ void find_held_nodes(const Model& model, Workspace& workspace) {
 }
 
 KernelGroup describe_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link) {
-  const Group& group = state.bodies[link.body].groups[link.group];
+  const Group& group = workspace.particles_of(state, link.body).groups[link.group];
   const Grid& grid = model.grid;
   KernelGroup k;
   k.begin = group.begin;
@@ -388,6 +393,8 @@ KernelGroup describe_group(const Model& model, const State& state, Workspace& wo
   k.time_step = 0;
   k.grid_velocity_fraction = model.numerics.grid_velocity_fraction();
   k.inverse_density = 1.0 / model.material_of(link.body).density;
+  k.axisymmetric = grid.axisymmetric();
+  k.section_share = grid.planar() ? grid.section_share() : 0;
   for (int axis = 0; axis < 3; ++axis) {
     k.corner[axis] = link.corner[axis];
     k.tile_low[axis] = link.tile_low[axis];
@@ -398,6 +405,7 @@ KernelGroup describe_group(const Model& model, const State& state, Workspace& wo
     if (grid.face[2 * axis] == Face::Free) k.bound_low[axis] = std::max(k.bound_low[axis], grid.domain_min[axis]);
     if (grid.face[2 * axis + 1] == Face::Free) k.bound_high[axis] = std::min(k.bound_high[axis], grid.domain_max[axis]);
   }
+  if (grid.axisymmetric()) k.bound_low[0] = std::max(k.bound_low[0], std::numeric_limits<double>::min());
   k.bound_low[3] = -std::numeric_limits<double>::infinity();
   k.bound_high[3] = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 27; ++i) {
@@ -409,35 +417,82 @@ KernelGroup describe_group(const Model& model, const State& state, Workspace& wo
   return k;
 }
 
+// The body's particles, ungrouped, in the order in which it has them itself.
+void renew_copy(State& state, int index) {
+  const BodyState& body = state.bodies[index];
+  BodyState& copy = state.copies[index];
+  copy.groups.clear();
+  copy.particles = copy.padded = body.particles;
+  const std::size_t n = static_cast<std::size_t>(body.particles);
+  copy.number.resize(n);
+  std::size_t next = 0;
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) copy.number[next++] = static_cast<std::int32_t>(p);
+  fill_copy(state, index);
+}
+
 }  // namespace
 
+void fill_copy(State& state, int index) {
+  const BodyState& body = state.bodies[index];
+  BodyState& copy = state.copies[index];
+  const std::size_t n = copy.number.size();
+  copy.position.resize(4 * n);
+  copy.velocity.resize(4 * n);
+  copy.volume_ratio.resize(n);
+  copy.energy.resize(n);
+  for (auto& component : copy.stress) component.resize(copy.stressed ? n : 0);
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    // Padding moves like the particle before it and weighs nothing.
+    const bool padding = copy.number[i] < 0;
+    if (!padding) last = static_cast<std::size_t>(copy.number[i]);
+    std::copy_n(&body.position[4 * last], 4, &copy.position[4 * i]);
+    std::copy_n(&body.velocity[4 * last], 4, &copy.velocity[4 * i]);
+    if (padding) copy.position[4 * i + 3] = 0;
+    copy.volume_ratio[i] = body.volume_ratio[last];
+    for (int c = 0; c < 6 && copy.stressed; ++c) copy.stress[c][i] = body.stress[c][last];
+  }
+}
+
 void bin_particles(const Model& model, State& state, Workspace& workspace, bool all) {
-  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b)
-    if (all || state.bodies[b].drifted) {
-      bin_body(model, state, workspace, b);
-      workspace.linked = false;
-    }
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
+    const bool lagrangian = state.bodies[b].lagrangian, copied = lagrangian && !workspace.is_reference;
+    if (workspace.is_reference ? !lagrangian : copied && !workspace.contact_needs.any) continue;
+    if (!all && !workspace.particles_of(state, b).drifted) continue;
+    if (copied) renew_copy(state, b);
+    bin_body(model, state, workspace, b);
+    workspace.linked = false;
+  }
 }
 
 void link_grid(const Model& model, const State& state, Workspace& workspace) {
   // Groups in the order of work.
   workspace.links.clear();
-  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b)
-    for (std::size_t g = 0; g < state.bodies[b].groups.size(); ++g) {
-      const Group& group = state.bodies[b].groups[g];
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
+    if (workspace.is_reference && !state.bodies[b].lagrangian) continue;
+    const std::vector<Group>& groups = workspace.particles_of(state, b).groups;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const Group& group = groups[g];
       GroupLinks link;
       link.body = b;
-      link.rigid = model.bodies[b].rigid();
+      link.guided = model.bodies[b].rigid() || (state.bodies[b].lagrangian && !workspace.is_reference);
       link.group = static_cast<std::int32_t>(g);
       for (int axis = 0; axis < 3; ++axis) {
         link.tile_low[axis] = group.low[axis];
         link.tile_high[axis] = group.high[axis] + 3;
         link.corner[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * group.block[axis] - 1);
       }
+      if (model.grid.planar()) link.tile_low[2] = link.tile_high[2] = 1;  // the block's first layer
       workspace.links.push_back(link);
     }
+  }
+  const auto field_of = [&](int body) { return workspace.is_reference ? body : model.field_of(body); };
+  const auto group_of = [&](const GroupLinks& link) -> const Group& {
+    return workspace.particles_of(state, link.body).groups[link.group];
+  };
   const auto pencil_order = [&](const GroupLinks& link) {
-    const auto& block = state.bodies[link.body].groups[link.group].block;
+    const auto& block = group_of(link).block;
     const std::int32_t colour = (block[2] & 1) * 2 + (block[1] & 1);
     return std::array<std::int32_t, 5>{colour, block[2], block[1], link.body, block[0]};
   };
@@ -456,7 +511,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
 
   // Slots: the neighbour blocks that each group's tile reaches.
   const auto for_reached = [&](const GroupLinks& link, auto&& visit) {
-    const Group& group = state.bodies[link.body].groups[link.group];
+    const Group& group = group_of(link);
     for (int z = (link.tile_low[2] + 3) >> 2; z <= (link.tile_high[2] + 3) >> 2; ++z)
       for (int y = (link.tile_low[1] + 3) >> 2; y <= (link.tile_high[1] + 3) >> 2; ++y)
         for (int x = (link.tile_low[0] + 3) >> 2; x <= (link.tile_high[0] + 3) >> 2; ++x)
@@ -467,13 +522,14 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   {
     BlockTable table(workspace.slots.size() + 64);
     for (const GroupLinks& link : workspace.links) {
-      const int field = model.field_of(link.body);
+      const int field = field_of(link.body);
       for_reached(link, [&](int, const std::array<std::int32_t, 3>& block) {
         const std::int32_t next = static_cast<std::int32_t>(found.size());
         if (table.insert(block_key(block, field), next) == next) {
           Slot slot;
           slot.block = block;
           slot.field = field;
+          slot.lagrangian = !workspace.is_reference && state.bodies[link.body].lagrangian;
           found.push_back(slot);
         }
       });
@@ -494,12 +550,14 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
     return block_key(a.block, a.field) < block_key(b.block, b.field);
   });
   workspace.slots.swap(found);
+  std::vector<std::int32_t> ordinals(model.bodies.size() + 1, 0);
+  for (Slot& slot : workspace.slots) slot.ordinal = ordinals[slot.field]++;
   BlockTable table(workspace.slots.size());
   for (std::size_t s = 0; s < workspace.slots.size(); ++s)
     table.insert(block_key(workspace.slots[s].block, workspace.slots[s].field), static_cast<std::int32_t>(s));
   for (GroupLinks& link : workspace.links) {
     link.slot.fill(-1);
-    const int field = model.field_of(link.body);
+    const int field = field_of(link.body);
     for_reached(link, [&](int neighbour, const std::array<std::int32_t, 3>& block) {
       link.slot[neighbour] = table.find(block_key(block, field));
     });
@@ -511,7 +569,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   for (std::int32_t s = 0, n = static_cast<std::int32_t>(workspace.slots.size()); s < n;) {
     std::int32_t end = s + 1;
     while (end < n && workspace.slots[end].block == workspace.slots[s].block) ++end;
-    if (end - s > 1 || at_wall(model, workspace.slots[s].block)) {
+    if (!workspace.is_reference && (end - s > 1 || at_wall(model, workspace.slots[s].block))) {
       workspace.mixed.push_back({s, end - s});
       for (std::int32_t i = s; i < end; ++i) workspace.slots[i].contact = contacts++;
     }
@@ -527,7 +585,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   for (GroupLinks& link : workspace.links)
     for (const std::int32_t s : link.slot)
       if (s >= 0 && workspace.slots[s].contact >= 0) link.contact = true;
-  find_held_nodes(model, workspace);
+  if (!workspace.is_reference) find_held_nodes(model, workspace);
   if (workspace.contact_needs.cloud) {
     workspace.slot_links_begin.assign(workspace.slots.size() + 1, 0);
     for (const GroupLinks& link : workspace.links)
@@ -546,7 +604,8 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   workspace.contacts.resize(static_cast<std::size_t>(contacts) * block_nodes);
   workspace.contact_stress.resize(workspace.contact_needs.stress ? workspace.contacts.size() : 0);
   workspace.occupied.resize(workspace.contact_needs.occupied ? workspace.contacts.size() : 0);
-  workspace.filter.resize(model.numerics.transfer == Transfer::Xpic ? workspace.nodes.size() : 0);
+  const bool filter = workspace.is_reference || model.numerics.transfer == Transfer::Xpic;
+  workspace.filter.resize(filter ? workspace.nodes.size() : 0);
   workspace.kernel_groups.clear();
   for (const GroupLinks& link : workspace.links)
     workspace.kernel_groups.push_back(describe_group(model, state, workspace, link));
@@ -554,9 +613,10 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   workspace.move_sums.resize(workspace.links.size());
   workspace.slot_contact_force.resize(workspace.slots.size());
   workspace.slot_given.resize(workspace.slots.size());
-  workspace.displacement.resize(model.numerics.stress_first() ? 0 : state.bodies.size());
+  const bool moves_last = !workspace.is_reference && !model.numerics.stress_first();
+  workspace.displacement.resize(moves_last ? state.bodies.size() : 0);
   for (std::size_t b = 0; b < workspace.displacement.size(); ++b)
-    if (!model.bodies[b].rigid())
+    if (!model.bodies[b].rigid() && !state.bodies[b].lagrangian)
       workspace.displacement[b].resize(4 * static_cast<std::size_t>(state.bodies[b].padded));
   workspace.linked = true;
 }
@@ -581,6 +641,8 @@ KernelParticles kernel_particles(BodyState& body) {
   k.viscous_pressure = body.viscous_pressure.empty() ? nullptr : body.viscous_pressure.data();
   k.displacement = nullptr;
   for (int c = 0; c < 9; ++c) k.deformation[c] = body.deformation[c].data();
+  for (std::size_t c = 0; c < body.history.size(); ++c) k.history[c] = body.history[c].data();
+  k.reference = body.reference.position.data();
   return k;
 }
 
@@ -593,6 +655,7 @@ KernelMaterial kernel_material(const Material& material, double cell_size) {
   k.A = material.yield_stress;
   k.B = material.hardening_modulus;
   k.n = material.hardening_exponent;
+  k.isotropic = material.isotropic_fraction;
   k.rate_coefficient = material.rate_coefficient;
   k.inverse_reference_rate = 1.0 / material.reference_strain_rate;
   k.thermal = material.thermal();
@@ -625,6 +688,7 @@ std::int64_t Workspace::memory_bytes() const {
   for (const PlacedSurface& placed : surfaces) total += placed.surface.memory_bytes();
   total += points.memory_bytes();
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
+  if (reference_grid) total += reference_grid->memory_bytes();
   return total;
 }
 

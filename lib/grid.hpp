@@ -9,11 +9,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "aligned.hpp"
 #include "contact/nodes.hpp"
 #include "contact/points.hpp"
+#include "lagrangian/contact.hpp"
 #include "model.hpp"
 #include "rigid/rigid_motion.hpp"
 #include "state.hpp"
@@ -22,12 +24,18 @@
 namespace ogive {
 
 constexpr int block_nodes = block_cells * block_cells * block_cells;
+constexpr int layer_nodes = block_cells * block_cells;  // of the lowest layer along z, which come first
 
 struct Slot {
   std::array<std::int32_t, 3> block{};
   std::int32_t field = 0;
   std::int32_t contact = -1;  // index of its contact records, in units of blocks; -1: none
   std::int32_t rigid = -1;    // index in Workspace::rigid; -1: deformable
+  bool lagrangian = false;    // of a total Lagrangian body on the common grid
+  std::int32_t ordinal = 0;   // among the slots of its field
+
+  // Moved by other means than this grid, which has it for contact alone.
+  bool guided() const { return rigid >= 0 || lagrangian; }
 };
 
 // A body's surface in a step.
@@ -47,7 +55,7 @@ struct GroupLinks {
   Vector3 corner{};
   bool contact = false;  // some of its slots have contact records
   std::int32_t first_load_sum = 0;  // in Workspace::load_sums
-  bool rigid = false;
+  bool guided = false;  // as Slot::guided
 };
 
 // Groups of all bodies in one row of blocks along x: worked on by one thread, in order. Pencils of one of the four colours
@@ -59,6 +67,13 @@ struct Pencil {
 // A block where contact is looked for: of two fields or more, or at a wall.
 struct MixedBlock {
   std::int32_t first_slot = 0, count = 0;
+};
+
+// A particle of a total Lagrangian body whose velocity is prescribed.
+struct PrescribedPoint {
+  std::int32_t axes = 0;
+  std::int32_t load = -1;        // -1: at rest
+  std::int64_t weights_end = 0;  // in Workspace::point_weights
 };
 
 // Loads on the particles of one group in one step.
@@ -86,7 +101,7 @@ struct MirrorPair {
 struct FaceNodes {
   int axis = 0;
   bool fixed = false;
-  // Those of deformable bodies first: of rigid ones only mass and contact sums are mirrored, not motion.
+  // Those of guided bodies last: of these only mass, momentum and contact sums are mirrored, not the change of motion.
   std::vector<MirrorPair> pairs;
   std::vector<std::int64_t> plane;
   std::size_t moving_pairs = 0, moving_plane = 0;
@@ -109,6 +124,7 @@ struct Workspace {
   const KernelTable* kernels = nullptr;
   int threads = 1;
   bool linked = false;  // the slots fit the groups
+  int nodes_in_use = block_nodes;  // of a slot, the first ones: a layer where the model is two-dimensional
 
   std::vector<Slot> slots;                // ordered by block (z, y, x), then field
   AlignedVector<NodeRecord> nodes;        // 64 a slot
@@ -143,8 +159,31 @@ struct Workspace {
   // Of each body's particles in this step, records; empty where the stress comes first.
   std::vector<AlignedVector<double>> displacement;
   std::vector<LoadSums> load_sums;        // of each link in turn: the loads on its body's particles, then the host's forces
+  // The grid of the reference configurations of total Lagrangian bodies, a field each; null where there are none. There
+  // `filter` takes the internal forces, and groups and particles are those of the bodies themselves.
+  std::unique_ptr<Workspace> reference_grid;
+  bool is_reference = false;
+  // Of it, by node: the node itself or its image inside, the components that change their sign there, and those that a mirror
+  // holds; by body and particle, the link; and the points whose velocity is prescribed.
+  std::vector<std::int64_t> image;
+  std::vector<std::int32_t> image_signs, held;
+  std::vector<std::vector<std::int32_t>> link_of;
+  std::vector<PrescribedPoint> prescribed_points;
+  std::vector<NodeWeight> point_weights;
+  // Of the common grid.
+  LagrangianContact lagrangian_contact;
+  double lagrangian_speed = 0;  // the fastest wave or particle of total Lagrangian bodies
+
   // The step has begun to change the state: until then a step that fails leaves it as it was.
   bool changing = false;
+
+  // The particles of a body as this grid has them.
+  const BodyState& particles_of(const State& state, int body) const {
+    return !is_reference && state.bodies[body].lagrangian ? state.copies[body] : state.bodies[body];
+  }
+  BodyState& particles_of(State& state, int body) const {
+    return const_cast<BodyState&>(particles_of(static_cast<const State&>(state), body));
+  }
 
   std::int64_t memory_bytes() const;
 };
@@ -152,6 +191,9 @@ struct Workspace {
 // Orders the particles of the bodies that have drifted (or of all, if `all`) by block and cell, removes those that have
 // left the domain and books them. Throws Error(Numerical) for a particle that is not a number or has crossed a mirror face.
 void bin_particles(const Model& model, State& state, Workspace& workspace, bool all);
+
+// Brings the copy of a total Lagrangian body to what its particles are now.
+void fill_copy(State& state, int body);
 
 // Slots, links, pencils, mixed blocks, face and clamp nodes for the groups as they are.
 void link_grid(const Model& model, const State& state, Workspace& workspace);

@@ -14,6 +14,8 @@
 namespace ogive {
 namespace {
 
+constexpr double pi = 3.141592653589793238;
+
 std::string text(double x) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.6g", x);
@@ -59,7 +61,7 @@ void validate_space(const Space& space, const std::string& prefix) {
 }  // namespace
 
 void Material::validate() {
-  require_choice("strength", strength, 4);
+  require_choice("strength", strength, 6);
   require_choice("eos", eos, 2);
   require_choice("failure", failure, 2);
   require_positive("density", density);
@@ -84,13 +86,17 @@ void Material::validate() {
     require_not_negative("eos_slope", eos_slope);
     require_not_negative("gruneisen", gruneisen);
     if (hyperelastic())
-      throw Error(ErrorKind::Argument, "eos: a neo-Hookean material brings its own pressure; must be linear");
+      throw Error(ErrorKind::Argument, "eos: a law of the deformation gradient brings its own pressure; must be linear");
   }
   if (plastic()) {
     require_positive("yield_stress", yield_stress);
     require_positive("shear_modulus", G);
     require_not_negative("hardening_modulus", hardening_modulus);
     require_positive("hardening_exponent", hardening_exponent);
+    if (mixed_hardening()) {
+      require(hardening_exponent == 1, "hardening_exponent", "1: this law hardens linearly", hardening_exponent);
+      require(isotropic_fraction >= 0 && isotropic_fraction <= 1, "isotropic_fraction", "0..1", isotropic_fraction);
+    }
   }
   if (strength == Strength::JohnsonCook) {
     require_not_negative("rate_coefficient", rate_coefficient);
@@ -105,7 +111,7 @@ void Material::validate() {
     }
   }
   if (failure == Failure::PlasticStrain) {
-    if (!plastic())
+    if (!plastic() || mixed_hardening())
       throw Error(ErrorKind::Argument, "failure: by plastic strain needs a plastic strength (j2_power or johnson_cook)");
     require_positive("failure_strain", failure_strain);
   }
@@ -114,7 +120,8 @@ void Material::validate() {
 }
 
 double Material::yield_stress_at(double plastic_strain, double temperature) const {
-  const double cold = yield_stress + hardening_modulus * std::pow(plastic_strain, hardening_exponent);
+  const double hardening = hardening_modulus * (mixed_hardening() ? isotropic_fraction : 1);
+  const double cold = yield_stress + hardening * std::pow(plastic_strain, hardening_exponent);
   if (!thermal()) return cold;
   const double t = (temperature - room_temperature) / (melt_temperature - room_temperature);
   return cold * (1 - std::pow(std::clamp(t, 0.0, 1.0), thermal_exponent));
@@ -147,8 +154,22 @@ void Model::set_pair(const PairRule& pair) {
     pairs.insert(place, ordered);
 }
 
+double Grid::section_share() const { return 1 / (axisymmetric() ? 2 * pi : thickness); }
+
+void Grid::lay_in_plane() {
+  if (!planar()) return;
+  domain_min[2] = 0;
+  domain_max[2] = cell_size;
+  face[4] = face[5] = Face::Free;
+  if (axisymmetric()) face[0] = Face::Symmetry;
+}
+
 void Model::validate_grid() const {
   require_positive("cell_size", grid.cell_size);
+  require_choice("space", grid.space, 3);
+  require_positive("thickness", grid.thickness);
+  if (grid.axisymmetric())
+    require(grid.domain_min[0] == 0, "domain_min[x]", "0 in an axisymmetric model, whose axis is x = 0", grid.domain_min[0]);
   const char axis_name[] = {'x', 'y', 'z'};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string index = std::string("[") + axis_name[axis] + "]";
@@ -164,6 +185,56 @@ void Model::validate_grid() const {
                                            "because that face is symmetry or fixed; got " + text(cells) + " cells");
     require(grid.face[2 * axis + 1] == Face::Free || cells >= 3, "domain" + index,
             "at least 3 cells where its max face is symmetry or fixed", cells);
+  }
+}
+
+// What acts out of the plane of a two-dimensional model, or across its axis.
+void Model::validate_planar() const {
+  if (!grid.planar()) return;
+  const auto in_plane = [](const std::string& field, double out_of_plane) {
+    require(out_of_plane == 0, field, "0 in a two-dimensional model", out_of_plane);
+  };
+  in_plane("gravity[z]", numerics.gravity[2]);
+  if (grid.axisymmetric()) require(numerics.gravity[0] == 0, "gravity[x]", "0 in an axisymmetric model", numerics.gravity[0]);
+  for (const Wall& wall : walls) {
+    in_plane("wall normal[z]", wall.normal[2]);
+    validate_planar(wall.rule, "wall detection");
+  }
+  validate_planar(contact, "contact detection");
+  for (const PairRule& pair : pairs) validate_planar(pair.rule, "contact pair detection");
+  for (const Body& body : bodies)
+    for (const MotionKnot& knot : body.motion) {
+      const std::string prefix = "body \"" + body.name + "\": ";
+      in_plane(prefix + "motion velocity[z]", knot.velocity[2]);
+      for (int axis = 0; axis < 2; ++axis)
+        in_plane(prefix + "motion angular_velocity[" + "xy"[axis] + "]", knot.angular_velocity[axis]);
+    }
+}
+
+void Model::validate_planar(const ContactRule& rule, const char* field) const {
+  if (by_surface(rule))
+    throw Error(ErrorKind::Argument,
+                std::string(field) + ": must be \"gap\" or \"shared_node\" in a two-dimensional model, got \"surface\"");
+}
+
+void Model::validate_lagrangian() const {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].total_lagrangian()) continue;
+    const std::string prefix = "body \"" + bodies[b].name + "\": a total Lagrangian body needs ";
+    if (grid.planar())
+      throw Error(ErrorKind::Argument, prefix + "a three-dimensional model: space must be \"three_dimensional\"");
+    if (numerics.shape_function == ShapeFunction::Gimp)
+      throw Error(ErrorKind::Argument, prefix + "shape_function \"linear\" or \"quadratic_bspline\", got \"gimp\"");
+    const auto refuse_surface = [&](const ContactRule& rule, const std::string& whom) {
+      if (rule.method != ContactMethod::SingleField && by_surface(rule))
+        throw Error(ErrorKind::Argument, prefix + "contact detection \"gap\" or \"shared_node\" with " + whom +
+                                             ", got \"surface\"");
+    };
+    for (std::size_t other = 0; other < bodies.size(); ++other)
+      if (other != b)
+        refuse_surface(rule_of(static_cast<int>(std::min(b, other)), static_cast<int>(std::max(b, other))),
+                       "\"" + bodies[other].name + "\"");
+    for (const Wall& wall : walls) refuse_surface(wall.rule, "walls");
   }
 }
 
@@ -229,6 +300,11 @@ void Model::validate_wall(const Wall& wall) const {
   validate_contact(wall.rule, "wall ");
 }
 
+void Model::validate_distortion(const Body& body) const {
+  require(body.distortion_limit > 1, "distortion_limit", "> 1 (infinity: none)", body.distortion_limit);
+  require_choice("when_distorted", body.when_distorted, 2);
+}
+
 void Model::validate_motion(const std::vector<MotionKnot>& motion) const {
   for (std::size_t i = 0; i < motion.size(); ++i) {
     require_finite("motion time", motion[i].time);
@@ -276,12 +352,14 @@ void Model::complete() {
             "at most " + std::to_string(most_particle_loads), count);
   }
   known(stop.body, "stop body", true);
+  validate_planar();
+  validate_lagrangian();
 
   own_fields = contact.method != ContactMethod::SingleField && bodies.size() > 1;
   for (const PairRule& pair : pairs) own_fields = own_fields || pair.rule.method != ContactMethod::SingleField;
   bool deformable = false;
   for (const Body& body : bodies) {
-    own_fields = own_fields || body.rigid();
+    own_fields = own_fields || body.rigid() || (body.total_lagrangian() && bodies.size() > 1);
     deformable = deformable || !body.rigid();
     if (body.rigid() && body.material < 0) refuse("material", "the id of a material", "-1");
     if (body.prescribed())
@@ -332,6 +410,10 @@ void Model::exchange(Archive& a) {
   a.value("model/grid/domain_min", grid.domain_min);
   a.value("model/grid/domain_max", grid.domain_max);
   a.value("model/grid/face", grid.face);
+  if (a.version() >= 3) {
+    a.value("model/grid/space", grid.space);
+    a.value("model/grid/thickness", grid.thickness);
+  }
   a.value("model/numerics/shape_function", numerics.shape_function);
   a.value("model/numerics/time_step_factor", numerics.time_step_factor);
   a.value("model/numerics/maximum_time_step", numerics.maximum_time_step);
@@ -411,6 +493,7 @@ void Model::exchange(Archive& a) {
         {"viscosity_quadratic", &m.viscosity_quadratic},
     };
     for (const auto& [name, number] : numbers) a.value(at + name, *number);
+    if (a.version() >= 3) a.value(at + "isotropic_fraction", m.isotropic_fraction);
   }
   count("model/bodies/count", bodies, 65535);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -420,6 +503,10 @@ void Model::exchange(Archive& a) {
     if (a.version() == 1) continue;
     a.value(at + "formulation", bodies[i].formulation);
     if (a.version() >= 3) exchange_surface(a, at + "surface/", bodies[i].surface);
+    if (bodies[i].total_lagrangian()) {
+      a.value(at + "distortion_limit", bodies[i].distortion_limit);
+      a.value(at + "when_distorted", bodies[i].when_distorted);
+    }
     if (!bodies[i].rigid()) continue;
     a.value(at + "cut", bodies[i].cut);
     a.value(at + "own_inertia", bodies[i].own_inertia);
@@ -475,7 +562,8 @@ void Model::exchange(Archive& a) {
     for (const Body& body : bodies) {
       if (body.material < 0 || body.material >= static_cast<std::int32_t>(materials.size()))
         throw Error(ErrorKind::Format, "model/bodies: material " + std::to_string(body.material) + " is unknown");
-      require_choice("formulation", body.formulation, 3);
+      require_choice("formulation", body.formulation, 4);
+      if (body.total_lagrangian()) validate_distortion(body);
       validate_motion(body.motion);
       if (body.prescribed() && body.motion.empty())
         throw Error(ErrorKind::Format, "model/bodies: a prescribed motion is missing");
@@ -488,6 +576,9 @@ void Model::exchange(Archive& a) {
     for (const Load& load : loads) validate_load(load);
     validate_contact(contact, "contact ");
     for (const PairRule& pair : pairs) validate_contact(pair.rule, "contact pair ");
+    const Grid as_saved = grid;
+    grid.lay_in_plane();
+    if (grid != as_saved) throw Error(ErrorKind::Format, "model/grid: a two-dimensional model must lie in its plane");
     complete();
   }
 }

@@ -19,12 +19,20 @@ namespace ogive {
 
 class Archive;
 
+enum class WorldSpace : std::int32_t { ThreeDimensional = 0, PlaneStrain = 1, Axisymmetric = 2 };
 enum class Face : std::int32_t { Free = 0, Symmetry = 1, Fixed = 2 };
 enum class ShapeFunction : std::int32_t { Linear = 0, QuadraticBSpline = 1, Gimp = 2 };
 enum class Transfer : std::int32_t { Flip = 0, AffineFlip = 1, Apic = 2, Xpic = 3 };
 // USF; MUSL, from momentum mapped once more; USL, from the velocities at the end of the step as they are.
 enum class UpdateOrder : std::int32_t { StressFirst = 0, StressLast = 1, StressLastAsIs = 2 };
-enum class Strength : std::int32_t { Elastic = 0, NeoHookean = 1, J2Power = 2, JohnsonCook = 3 };
+enum class Strength : std::int32_t {
+  Elastic = 0,
+  NeoHookean = 1,
+  J2Power = 2,
+  JohnsonCook = 3,
+  J2Mixed = 4,          // Lee et al. 2005 (2.1)-(2.13), in second Piola-Kirchhoff stress and Green-Lagrange strain
+  J2Multiplicative = 5  // the same hardening with F = F_e F_p and logarithmic elastic strain
+};
 enum class EquationOfState : std::int32_t { Linear = 0, MieGruneisen = 1 };
 enum class Failure : std::int32_t { None = 0, PlasticStrain = 1 };
 // Index into the registry of contact/method.hpp.
@@ -46,7 +54,9 @@ enum class NormalRule : std::int32_t {
   OccupiedCell = 3,
   LogisticRegression = 4
 };
-enum class Formulation : std::int32_t { Deformable = 0, RigidFree = 1, RigidPrescribed = 2 };
+enum class Formulation : std::int32_t { Deformable = 0, RigidFree = 1, RigidPrescribed = 2, TotalLagrangian = 3 };
+// What becomes of a total Lagrangian body that is too distorted.
+enum class WhenDistorted : std::int32_t { Update = 0, Stop = 1 };
 enum class Detection : std::int32_t { SharedNode = 0, Gap = 1, Surface = 2 };
 enum class Region : std::int32_t { Box = 0, OutsideCylinder = 1, Everywhere = 2 };
 enum class LoadKind : std::int32_t { Acceleration = 0, Traction = 1, Velocity = 2 };
@@ -56,6 +66,19 @@ struct Grid {
   Vector3 domain_min{};
   Vector3 domain_max{};
   std::array<Face, 6> face{};  // x min, x max, y min, y max, z min, z max
+  WorldSpace space = WorldSpace::ThreeDimensional;
+  double thickness = 1;        // plane strain
+
+  // Two-dimensional: particles and nodes in the plane z = 0; axisymmetric: x is the radius, y the axis.
+  bool planar() const { return space != WorldSpace::ThreeDimensional; }
+  bool axisymmetric() const { return space == WorldSpace::Axisymmetric; }
+  // Area of a section by the volume that belongs to it: at radius 1, and anywhere. Planar models only.
+  double section_share() const;
+  double section_share_at(double x) const { return axisymmetric() ? section_share() / x : section_share(); }
+  // Two-dimensional models: one layer of cells along z, and a mirror at the axis.
+  void lay_in_plane();
+
+  bool operator==(const Grid&) const = default;
 };
 
 struct Numerics {
@@ -115,6 +138,7 @@ struct Material {
   double density = 0;
   double youngs_modulus = 0, poisson_ratio = 0, bulk_modulus = 0, shear_modulus = 0;
   double yield_stress = 0, hardening_modulus = 0, hardening_exponent = 1;
+  double isotropic_fraction = 1;  // c of (2.10), (2.12): 1 isotropic, 0 kinematic hardening
   double rate_coefficient = 0, reference_strain_rate = 1;
   double thermal_exponent = 0, melt_temperature = 0, room_temperature = 293, specific_heat = 0, taylor_quinney = 1;
   double eos_sound_speed = 0, eos_slope = 0, gruneisen = 0;
@@ -124,10 +148,13 @@ struct Material {
   // Derived by validate(): always both, whichever pair was given.
   double K = 0, G = 0;
 
-  bool plastic() const { return strength == Strength::J2Power || strength == Strength::JohnsonCook; }
+  bool plastic() const { return strength != Strength::Elastic && strength != Strength::NeoHookean; }
+  bool mixed_hardening() const { return strength == Strength::J2Mixed || strength == Strength::J2Multiplicative; }
   bool thermal() const { return strength == Strength::JohnsonCook && thermal_exponent > 0; }
   bool rate_dependent() const { return strength == Strength::JohnsonCook && rate_coefficient > 0; }
-  bool hyperelastic() const { return strength == Strength::NeoHookean; }
+  bool hyperelastic() const { return strength == Strength::NeoHookean || mixed_hardening(); }  // keeps F
+  // Values a particle that the law remembers beside: E_p and back stress, or the inverse of F_p and back stress.
+  int history_size() const { return strength == Strength::J2Mixed ? 12 : strength == Strength::J2Multiplicative ? 15 : 0; }
   bool viscous() const { return viscosity_linear > 0 || viscosity_quadratic > 0; }
   // (A + B eps_p^n)(1 - T*^m), of a plastic material.
   double yield_stress_at(double plastic_strain, double temperature) const;
@@ -153,10 +180,16 @@ struct Body {
   std::vector<MotionKnot> motion;
 
   SurfaceDef surface;          // none: it has none
+  // Total Lagrangian bodies only: the largest |F| |F^-1| / 3 of their particles that they bear.
+  double distortion_limit = 10;
+  WhenDistorted when_distorted = WhenDistorted::Update;
 
-  // Whether contact can use it: a deformable body carries vertices.
-  bool has_surface() const { return surface.given() && (rigid() || surface.kind == SurfaceKind::Triangles); }
-  bool rigid() const { return formulation != Formulation::Deformable; }
+  // Whether contact can use it: a deformable body carries vertices with the grid, which a total Lagrangian one does not.
+  bool has_surface() const {
+    return surface.given() && !total_lagrangian() && (rigid() || surface.kind == SurfaceKind::Triangles);
+  }
+  bool rigid() const { return formulation == Formulation::RigidFree || formulation == Formulation::RigidPrescribed; }
+  bool total_lagrangian() const { return formulation == Formulation::TotalLagrangian; }
   bool prescribed() const { return formulation == Formulation::RigidPrescribed; }
 };
 
@@ -201,7 +234,7 @@ struct Model {
   Stop stop;
 
   // Derived by complete(): bodies have velocity fields of their own. Not so where every pair is of the single-field method
-  // and no body is rigid.
+  // and every body moves with the grid.
   bool own_fields = false;
 
   int field_of(int body) const { return own_fields ? body : 0; }
@@ -213,11 +246,15 @@ struct Model {
   // Each throws Error naming field, value and expectation.
   void validate_grid() const;
   void validate_numerics() const;
+  void validate_planar() const;
+  void validate_lagrangian() const;  // what total Lagrangian bodies cannot be joined with
+  void validate_planar(const ContactRule& rule, const char* field) const;
   void validate_clamp(const Clamp& clamp) const;
   void validate_load(const Load& load) const;
   void validate_contact(const ContactRule& rule, const char* where) const;
   void validate_wall(const Wall& wall) const;
   void validate_motion(const std::vector<MotionKnot>& motion) const;
+  void validate_distortion(const Body& body) const;
   void complete();  // checks what needs the whole model and fills the derived values
 
   void exchange(Archive& archive);  // saves or loads every field

@@ -27,7 +27,8 @@ void describe_body(std::string& text, const Model& model, const State& state, in
   const Material& m = model.material_of(b);
   const Body& rules = model.bodies[b];
   static const char* const strengths[] = {"linear elastic", "compressible neo-Hookean", "von Mises with A + B eps^n",
-                                          "Johnson-Cook"};
+                                          "Johnson-Cook", "von Mises with mixed hardening in Green-Lagrange strain",
+                                          "von Mises with mixed hardening, multiplicative"};
   double mass = 0;
   const BodyState& body = state.bodies[b];
   for (std::int64_t p = 0; p < body.padded; ++p) mass += body.position[4 * p + 3];
@@ -44,6 +45,15 @@ void describe_body(std::string& text, const Model& model, const State& state, in
   line(text, "body \"%s\": %lld particles, mass %.6g, material \"%s\": %s, %s pressure", model.bodies[b].name.c_str(),
        static_cast<long long>(body.particles), mass, m.name.c_str(), strengths[static_cast<int>(m.strength)],
        m.eos == EquationOfState::MieGruneisen ? "Mie-Grueneisen" : "linear");
+  if (body.lagrangian) {
+    line(text, "  total Lagrangian: %zu nodes of its own, central differences; critical time step that of %.3g cells",
+         body.reference.node_position.size() / 4, body.reference.critical_length / model.grid.cell_size);
+    line(text, "  distorted beyond |F| |F^-1| / 3 = %.3g it %s", rules.distortion_limit,
+         rules.when_distorted == WhenDistorted::Stop ? "ends the run" : "goes on updated Lagrangian");
+    if (body.reference.critical_length < 0.5 * model.grid.cell_size)
+      line(text, "  caution: particles of \"%s\" lie so near to planes of nodes that its time step is short; shift or refine its "
+                 "particles, or use B-splines", rules.name.c_str());
+  }
   std::string omitted;
   const auto omit = [&](const char* what) {
     if (!omitted.empty()) omitted += ", ";
@@ -53,7 +63,8 @@ void describe_body(std::string& text, const Model& model, const State& state, in
   if (m.plastic() && !m.thermal()) omit("temperature (no thermal softening is given)");
   if (m.plastic() && !m.rate_dependent()) omit("strain rate (its coefficient is 0)");
   if (m.plastic() && m.failure == Failure::None) omit("failure (none is given)");
-  if (!m.hyperelastic()) omit("deformation gradient (no law needs it)");
+  if (!m.hyperelastic() && !body.lagrangian) omit("deformation gradient (no law needs it)");
+  if (body.lagrangian) omit("binning and the common grid where no other body is near");
   if (!m.viscous()) omit("bulk viscosity (coefficients are 0)");
   line(text, "  left out: %s", omitted.empty() ? "nothing" : omitted.c_str());
 }
@@ -107,10 +118,14 @@ std::string describe_plan(const Model& model, const State& state, const Workspac
   std::string text;
   static const char* const faces[] = {"free", "symmetry", "fixed"};
   static const char* const shapes[] = {"trilinear", "quadratic B-spline", "GIMP"};
-  line(text, "grid: cells of %.6g, %s shape functions, %zu blocks of 64 nodes where material is",
+  line(text, "grid: cells of %.6g, %s shape functions, %zu blocks of %d nodes where material is",
        model.grid.cell_size,
        shapes[static_cast<int>(model.numerics.shape_function)],
-       workspace.slots.size());
+       workspace.slots.size(), workspace.nodes_in_use);
+  if (model.grid.axisymmetric())
+    line(text, "two dimensions: axisymmetric about y, without twist; x is the radius, masses are those of whole rings");
+  else if (model.grid.planar())
+    line(text, "two dimensions: plane strain, masses are those of a thickness of %.6g", model.grid.thickness);
   static const char* const transfers[] = {"FLIP", "FLIP with affine velocity", "APIC", "XPIC"};
   static const char* const orders[] = {"first (USF)", "last (MUSL)", "last, from the velocities as they are (USL)"};
   const Numerics& numerics = model.numerics;

@@ -25,11 +25,17 @@ std::int64_t State::memory_bytes() const {
              bytes(body.loads) + bytes(body.force) + bytes(body.groups) + bytes(body.surface_vertices);
     for (const auto& c : body.stress) total += bytes(c);
     for (const auto& c : body.deformation) total += bytes(c);
+    for (const auto& c : body.history) total += bytes(c);
+    const ReferenceState& reference = body.reference;
+    total += bytes(reference.position) + bytes(reference.node_position) + bytes(reference.node_velocity) +
+             bytes(reference.node_force);
   }
+  for (const BodyState& copy : copies)
+    total += bytes(copy.position) + bytes(copy.velocity) + bytes(copy.volume_ratio) + bytes(copy.number) + bytes(copy.groups);
   return total;
 }
 
-void allocate_particles(const Material& material, bool rigid, std::int64_t padded, BodyState& body) {
+void allocate_particles(const Material& material, const Body& rules, std::int64_t padded, BodyState& body) {
   const std::size_t n = static_cast<std::size_t>(padded);
   body.padded = padded;
   body.position.assign(4 * n, 0.0);
@@ -37,19 +43,21 @@ void allocate_particles(const Material& material, bool rigid, std::int64_t padde
   body.volume_ratio.assign(n, 1.0);
   body.energy.assign(n, 0.0);
   body.number.assign(n, -1);
-  if (rigid) return;
+  if (rules.rigid()) return;
   for (auto& c : body.stress) c.assign(n, 0.0);
   if (material.plastic()) {
     body.plastic_strain.assign(n, 0.0);
     body.yield_stress.assign(n, material.yield_stress);
   }
   if (material.thermal()) body.temperature.assign(n, material.room_temperature);
-  if (material.hyperelastic())
+  if (material.hyperelastic() || rules.total_lagrangian())
     for (int c = 0; c < 9; ++c) body.deformation[c].assign(n, c % 4 == 0 ? 1.0 : 0.0);
+  for (int c = 0; c < material.history_size(); ++c)
+    body.history[c].assign(n, material.strength == Strength::J2Multiplicative && c < 9 && c % 4 == 0 ? 1.0 : 0.0);
 }
 
 void allocate_transfer(const Model& model, int index, BodyState& body) {
-  if (model.bodies[index].rigid()) return;
+  if (model.bodies[index].rigid() || body.lagrangian) return;
   const Material& material = model.material_of(index);
   const std::size_t n = static_cast<std::size_t>(body.padded);
   if (model.numerics.affine() && body.affine.empty()) {
@@ -119,8 +127,66 @@ static void exchange_pairs(State& state, Archive& a) {
   if (bodies.size() % 2 != 0) throw Error(ErrorKind::Format, "state/pairs/bodies: expected an even count");
 }
 
+// Groups: eleven whole numbers each.
+static void exchange_groups(Archive& a, const std::string& at, BodyState& body) {
+  std::vector<std::int64_t> groups;
+  if (!a.loading())
+    for (const Group& g : body.groups) {
+      groups.insert(groups.end(), {g.block[0], g.block[1], g.block[2], g.begin, g.count});
+      groups.insert(groups.end(), {g.low[0], g.low[1], g.low[2], g.high[0], g.high[1], g.high[2]});
+    }
+  a.resizable(at + "groups", groups, std::int64_t{11} << 28);
+  if (a.loading()) {
+    if (groups.size() % 11 != 0)
+      throw Error(ErrorKind::Format, at + "groups: expected a multiple of 11 numbers, found " +
+                                         std::to_string(groups.size()));
+    body.particles = body.padded = 0;
+    for (std::size_t i = 0; i < groups.size(); i += 11) {
+      Group g;
+      bool good = groups[i + 3] == body.padded && groups[i + 4] > 0 && groups[i + 4] < (std::int64_t{1} << 31);
+      g.begin = groups[i + 3];
+      g.count = static_cast<std::int32_t>(groups[i + 4]);
+      for (int axis = 0; axis < 3; ++axis) {
+        g.block[axis] = static_cast<std::int32_t>(groups[i + axis]);
+        g.low[axis] = static_cast<std::int32_t>(groups[i + 5 + axis]);
+        g.high[axis] = static_cast<std::int32_t>(groups[i + 8 + axis]);
+        good = good && std::abs(groups[i + axis]) <= 32000 && g.low[axis] >= 0 && g.low[axis] <= g.high[axis] &&
+               g.high[axis] < block_cells;
+      }
+      if (!good) throw Error(ErrorKind::Format, at + "groups: group " + std::to_string(i / 11) + " is not consistent");
+      body.particles += g.count;
+      body.padded = g.padded_end();
+      body.groups.push_back(g);
+    }
+  }
+}
+
+static void exchange_reference(State& state, std::size_t b, Archive& a) {
+  BodyState& body = state.bodies[b];
+  ReferenceState& reference = body.reference;
+  const std::string at = "state/bodies/" + std::to_string(b) + "/reference/";
+  a.sized(at + "position", reference.position, 4 * body.padded);
+  a.value(at + "critical_length", reference.critical_length);
+  a.value(at + "kinetic", reference.kinetic);
+  a.value(at + "angular_momentum", reference.angular_momentum);
+  a.value(at + "distorted", reference.distorted);
+  a.resizable(at + "node_position", reference.node_position, std::int64_t{1} << 33);
+  const std::int64_t size = static_cast<std::int64_t>(reference.node_position.size());
+  a.sized(at + "node_velocity", reference.node_velocity, size);
+  a.sized(at + "node_force", reference.node_force, size);
+  BodyState& copy = state.copies[b];
+  exchange_groups(a, at + "copy_", copy);
+  a.sized(at + "copy_number", copy.number, copy.padded);
+  a.value(at + "copy_drifted", copy.drifted);
+  for (const std::int32_t n : copy.number)
+    if (n < -1 || n >= body.padded)
+      throw Error(ErrorKind::Format, at + "copy_number: expected -1.." + std::to_string(body.padded - 1) + ", found " +
+                                         std::to_string(n));
+}
+
 void State::exchange(const Model& model, Archive& a) {
   if (a.loading()) bodies.assign(model.bodies.size(), BodyState{});
+  copies.resize(bodies.size());
   a.value("state/time", time);
   a.value("state/last_time_step", last_time_step);
   a.value("state/stable_time_step", stable_time_step);
@@ -161,10 +227,12 @@ void State::exchange(const Model& model, Archive& a) {
     exchange_pairs(*this, a);
     exchange_contact_memory(*this, a);
   }
+  if (a.version() >= 3) a.value("state/ledger/contact_dissipation", ledger.contact_dissipation);
 
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     BodyState& body = bodies[b];
-    const bool rigid = model.bodies[b].rigid();
+    const bool rigid = model.bodies[b].rigid(), total_lagrangian = model.bodies[b].total_lagrangian();
+    if (total_lagrangian) a.value("state/bodies/" + std::to_string(b) + "/lagrangian", body.lagrangian);
     const Material& material = model.material_of(static_cast<int>(b));
     const std::string at = "state/bodies/" + std::to_string(b) + "/";
     BodyTotals& t = body.totals;
@@ -194,37 +262,7 @@ void State::exchange(const Model& model, Archive& a) {
       }
     }
 
-    // Groups: eleven whole numbers each.
-    std::vector<std::int64_t> groups;
-    if (!a.loading())
-      for (const Group& g : body.groups) {
-        groups.insert(groups.end(), {g.block[0], g.block[1], g.block[2], g.begin, g.count});
-        groups.insert(groups.end(), {g.low[0], g.low[1], g.low[2], g.high[0], g.high[1], g.high[2]});
-      }
-    a.resizable(at + "groups", groups, std::int64_t{11} << 28);
-    if (a.loading()) {
-      if (groups.size() % 11 != 0)
-        throw Error(ErrorKind::Format, at + "groups: expected a multiple of 11 numbers, found " +
-                                           std::to_string(groups.size()));
-      body.particles = body.padded = 0;
-      for (std::size_t i = 0; i < groups.size(); i += 11) {
-        Group g;
-        bool good = groups[i + 3] == body.padded && groups[i + 4] > 0 && groups[i + 4] < (std::int64_t{1} << 31);
-        g.begin = groups[i + 3];
-        g.count = static_cast<std::int32_t>(groups[i + 4]);
-        for (int axis = 0; axis < 3; ++axis) {
-          g.block[axis] = static_cast<std::int32_t>(groups[i + axis]);
-          g.low[axis] = static_cast<std::int32_t>(groups[i + 5 + axis]);
-          g.high[axis] = static_cast<std::int32_t>(groups[i + 8 + axis]);
-          good = good && std::abs(groups[i + axis]) <= 32000 && g.low[axis] >= 0 && g.low[axis] <= g.high[axis] &&
-                 g.high[axis] < block_cells;
-        }
-        if (!good) throw Error(ErrorKind::Format, at + "groups: group " + std::to_string(i / 11) + " is not consistent");
-        body.particles += g.count;
-        body.padded = g.padded_end();
-        body.groups.push_back(g);
-      }
-    }
+    exchange_groups(a, at, body);
     if (!rigid && model.bodies[b].has_surface())
       a.sized(at + "surface_vertices", body.surface_vertices,
               static_cast<std::int64_t>(model.bodies[b].surface.vertices.size()));
@@ -240,14 +278,18 @@ void State::exchange(const Model& model, Archive& a) {
       a.sized(at + "yield_stress", body.yield_stress, n);
     }
     if (!rigid && material.thermal()) a.sized(at + "temperature", body.temperature, n);
-    if (!rigid && material.hyperelastic())
+    if (!rigid && (material.hyperelastic() || body.lagrangian))
       for (int c = 0; c < 9; ++c) a.sized(at + "deformation_" + std::to_string(c), body.deformation[c], n);
-    if (!rigid && model.numerics.affine() && a.version() == 1) {
+    for (int c = 0; c < material.history_size() && !rigid; ++c)
+      a.sized(at + "history_" + std::to_string(c), body.history[c], n);
+    if (body.lagrangian) exchange_reference(*this, b, a);
+    const bool by_grid = !rigid && !body.lagrangian;
+    if (by_grid && model.numerics.affine() && a.version() == 1) {
       exchange_old_affine(a, at + "affine", body.affine, n);
-    } else if (!rigid && model.numerics.affine()) {
+    } else if (by_grid && model.numerics.affine()) {
       a.sized(at + "affine", body.affine, affine_size * n);
     }
-    if (!rigid && !model.numerics.stress_first() && material.viscous())
+    if (by_grid && !model.numerics.stress_first() && material.viscous())
       a.sized(at + "viscous_pressure", body.viscous_pressure, n);
     a.sized(at + "number", body.number, n);
     if (a.version() >= 2) {
@@ -262,13 +304,19 @@ void State::exchange(const Model& model, Archive& a) {
     if (a.loading()) {
       // Positions must lie where the groups say, or the tiles would be left: the bounds are those of the drift limit.
       const double h = model.grid.cell_size;
+      const AlignedVector<double>& place = body.lagrangian ? body.reference.position : body.position;
       for (const Group& g : body.groups)
         for (std::int64_t p = g.begin; p < g.padded_end() && !body.drifted; ++p)
           for (int axis = 0; axis < 3; ++axis) {
-            const double cell = (body.position[4 * p + axis] - model.grid.domain_min[axis]) / h - 4.0 * g.block[axis];
+            const double cell = (place[4 * p + axis] - model.grid.domain_min[axis]) / h - 4.0 * g.block[axis];
             if (!(cell > g.low[axis] - 0.5 && cell < g.high[axis] + 1.5))
               throw Error(ErrorKind::Format, at + "position: particle " + std::to_string(p) + " is outside its group");
           }
+      if (model.grid.axisymmetric())
+        for (std::int64_t p = 0; p < n; ++p)
+          if (!(body.position[4 * p] > 0))
+            throw Error(ErrorKind::Format, at + "position: particle " + std::to_string(p) + " must have a radius > 0, found " +
+                                               std::to_string(body.position[4 * p]));
     }
   }
   if (a.loading() && !(stable_time_step > 0))

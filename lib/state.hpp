@@ -55,6 +55,19 @@ struct RigidState {
   Vector3 shift{};
 };
 
+// The reference grid of a total Lagrangian body. Its particles stay in the groups of their reference positions.
+struct ReferenceState {
+  AlignedVector<double> position;       // of the particles, records {X, Y, Z, mass}
+  // Nodes: 64 for each block that the groups reach, in the order of the blocks.
+  AlignedVector<double> node_position;  // records {x, y, z, lumped mass}
+  AlignedVector<double> node_velocity;  // records {vx, vy, vz, 0}: in the middle between this step and the last
+  AlignedVector<double> node_force;     // records {fx, fy, fz, 0}: internal force now
+  double critical_length = 0;           // the critical time step is this by the wave speed, (3.22)
+  double kinetic = 0;                   // of the nodes now
+  Vector3 angular_momentum{};           // of the nodes, about the origin
+  bool distorted = false;               // beyond the body's limit: updated Lagrangian from the next step on
+};
+
 // Particle arrays are `padded` long; those that the material does not need are empty.
 struct BodyState {
   std::int64_t particles = 0;  // real ones
@@ -70,6 +83,7 @@ struct BodyState {
   AlignedVector<double> temperature;
   AlignedVector<double> viscous_pressure;       // waits for the next step's forces where the stress comes last
   std::array<AlignedVector<double>, 9> deformation;  // F row by row
+  std::array<AlignedVector<double>, 15> history;     // what laws of finite strain remember, materials/finite_strain.hpp
   AlignedVector<std::int32_t> number;                // the particle's number in its body, -1 in the padding
   AlignedVector<std::int32_t> loads;                 // bit k: the body's k-th load on particles acts on it; empty: none
   AlignedVector<double> force;                       // records {fx, fy, fz, 0}: the host's force; empty: none was given
@@ -79,6 +93,9 @@ struct BodyState {
   BodyTotals totals;
   RigidState rigid;                                  // rigid bodies only
   std::vector<double> surface_vertices;              // deformable bodies with a surface: three coordinates each, now
+  bool lagrangian = false;                           // computed total Lagrangian now
+  ReferenceState reference;                          // then alone
+  bool stressed = false;                             // copies: with the stress, where a contact method asks for it
 
   // Calls f(array) for each per-particle array of doubles with one value a particle that is in use.
   template <class F>
@@ -93,13 +110,15 @@ struct BodyState {
     if (!viscous_pressure.empty()) f(viscous_pressure);
     if (!deformation[0].empty())
       for (auto& component : deformation) f(component);
+    for (auto& component : history)
+      if (!component.empty()) f(component);
   }
 };
 
 // Momentum and energy that no particle carries; see ogive_ledger.
 struct Ledger {
   double friction_dissipation = 0, transfer_dissipation = 0, contact_work = 0, boundary_work = 0, external_work = 0,
-         prescribed_work = 0;
+         prescribed_work = 0, contact_dissipation = 0;
   Vector3 boundary_impulse{}, external_impulse{}, contact_couple{};
   double initial_total = 0;
 };
@@ -140,6 +159,9 @@ struct State {
   double time = 0, last_time_step = 0, stable_time_step = 0;
   std::int64_t steps = 0, particle_steps = 0;
   std::vector<BodyState> bodies;
+  // Of total Lagrangian bodies: their particles' mass, place, velocity and volume in groups of where they are now, for
+  // contact; `number` is the place in the body's own arrays. Empty for others.
+  std::vector<BodyState> copies;
   std::vector<LoadState> loads;    // one for each of the model's
   std::vector<PairTotals> pairs;   // ordered by a, then b
   Ledger ledger;
@@ -152,8 +174,8 @@ struct State {
   void exchange(const Model& model, Archive& archive);
 };
 
-// Gives a body the arrays that its material needs, `padded` long; a rigid one has no stress.
-void allocate_particles(const Material& material, bool rigid, std::int64_t padded, BodyState& body);
+// Gives a body the arrays that its material and formulation need, `padded` long; a rigid one has no stress.
+void allocate_particles(const Material& material, const Body& rules, std::int64_t padded, BodyState& body);
 // Gives it those that the numerics need, where it has none yet.
 void allocate_transfer(const Model& model, int index, BodyState& body);
 

@@ -15,9 +15,11 @@
 #include "contact/contact.hpp"
 #include "contact/occupied.hpp"
 #include "error.hpp"
+#include "lagrangian/lagrangian.hpp"
 #include "loads/loads.hpp"
+#include "parallel.hpp"
+#include "phases.hpp"
 #include "rigid/rigid.hpp"
-#include "simd/subnormals.hpp"
 #include "surface/meeting.hpp"
 #include "time_step.hpp"
 
@@ -34,10 +36,9 @@ void filtered_velocities(Workspace& workspace);
 void nodal_velocities(Workspace& workspace);
 void update_stress(const Model& model, State& state, Workspace& workspace, double dt);
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt);
+void book_hoop_force(const Model& model, State& state, const Workspace& workspace, double dt);
 void map_external_force(const Model& model, State& state, Workspace& workspace);
 void measure_external_force(const Model& model, State& state, Workspace& workspace, double dt);
-void trial_velocities(const Model& model, Workspace& workspace, double dt);
-void book_gravity(const Model& model, State& state, const Workspace& workspace, double dt);
 void accelerations(State& state, Workspace& workspace, double dt);
 void update_velocity_and_position(const Model& model, State& state, Workspace& workspace, double dt);
 
@@ -48,6 +49,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   const bool stress_first = model.numerics.stress_first();
   const bool xpic = model.numerics.transfer == Transfer::Xpic;
   workspace.changing = false;
+  retire_distorted(model, state, workspace);
   bin_particles(model, state, workspace, false);                 // particles that left their cells; the domain
   if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
   allocate_load_sums(model, state, workspace);
@@ -59,6 +61,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   fold_momentum(workspace);                                      // symmetry and fixed faces
   fold_contact_sums(workspace);
   nodal_velocities(workspace);                                   // (6)
+  kick_lagrangian(model, state, workspace, dt);                  // total Lagrangian bodies
   begin_rigid_step(model, state, workspace, dt);
   set_rigid_velocities(model, workspace, false);
   if (xpic) filter_velocities(model, state, workspace);          // v* of XPIC
@@ -72,11 +75,13 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   } else {
     map_internal_force(model, state, workspace, dt);             // (31)
   }
+  book_hoop_force(model, state, workspace, dt);
   map_external_force(model, state, workspace);                   // loads of the host
   fold_force(state, workspace, dt);
   trial_velocities(model, workspace, dt);                        // (32), (11) or (26)
   accelerate_rigid(model, state, workspace, dt);
   set_rigid_velocities(model, workspace, true);
+  set_lagrangian_trial(workspace);
   if (contact) return_start(workspace);                          // the jump of (25) belongs to the increment (34)
   hold_faces(state, workspace);
   map_contact_stress(model, state, workspace);
@@ -99,11 +104,13 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
     fold_momentum(workspace);
     nodal_velocities(workspace);
     set_rigid_velocities(model, workspace, false);
+    set_lagrangian_velocities(workspace);
     if (contact) start_contact(model, state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
     unfold_velocity(workspace);
   }
   if (!stress_first) update_stress(model, state, workspace, dt); // (29), (30), stress; moves the particles (33)
   finish_rigid_step(model, state, workspace, dt);
+  finish_lagrangian_step(model, state, workspace, dt);
 
   state.time += dt;
   state.last_time_step = dt;
@@ -116,43 +123,16 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
 namespace {
 
 KernelParticles particles_of(State& state, Workspace& workspace, const GroupLinks& link) {
-  KernelParticles particles = kernel_particles(state.bodies[link.body]);
+  KernelParticles particles = kernel_particles(workspace.particles_of(state, link.body));
   if (!workspace.displacement.empty()) particles.displacement = workspace.displacement[link.body].data();
   return particles;
 }
 
-// Runs work(link, index) over all groups, colour by colour: the groups of one colour write to disjoint nodes.
-template <class Work>
-void for_coloured_groups(Workspace& workspace, Work&& work) {
-  for (int colour = 0; colour < 4; ++colour) {
-    const std::int32_t begin = workspace.colour[colour], end = workspace.colour[colour + 1];
-#pragma omp parallel num_threads(workspace.threads) if (end - begin > 1)
-    {
-      const FlushSubnormals flush;
-#pragma omp for schedule(dynamic, 1)
-      for (std::int32_t p = begin; p < end; ++p)
-        for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
-    }
-  }
-}
-
-// Runs work(node record) over all nodes.
-template <class Work>
-void for_nodes(Workspace& workspace, Work&& work) {
-  const std::int64_t count = static_cast<std::int64_t>(workspace.nodes.size());
-#pragma omp parallel num_threads(workspace.threads)
-  {
-    const FlushSubnormals flush;
-#pragma omp for schedule(static)
-    for (std::int64_t i = 0; i < count; ++i) work(workspace.nodes[i]);
-  }
-}
-
 void clear_grid(Workspace& workspace) {
-  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-  for (std::int64_t s = 0; s < slots; ++s)
-    std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0, block_nodes * sizeof(NodeRecord));
+  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+    std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0,
+                static_cast<std::size_t>(workspace.nodes_in_use) * sizeof(NodeRecord));
+  });
 }
 
 void clear_contacts(Workspace& workspace) {
@@ -164,8 +144,8 @@ void clear_contacts(Workspace& workspace) {
 void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace) {
   const auto& maps = workspace.kernels->map_momentum[static_cast<int>(model.numerics.shape_function)];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
-    if (link.rigid && !link.contact) return;  // only contact asks for a rigid body's nodes
-    const auto map = maps[model.numerics.affine() && !link.rigid];
+    if (link.guided && !link.contact) return;  // only contact asks for a rigid body's nodes
+    const auto map = maps[model.numerics.affine() && !link.guided];
     map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link));
   });
 }
@@ -187,7 +167,7 @@ void map_contact_stress(const Model& model, State& state, Workspace& workspace) 
               workspace.contact_stress.size() * sizeof(ContactStress));
   const auto map = workspace.kernels->optional->map_contact_stress[static_cast<int>(model.numerics.shape_function)];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
-    if (!link.contact || link.rigid) return;
+    if (!link.contact || workspace.particles_of(state, link.body).stress[0].empty()) return;
     ContactStress* nodes[27];
     for (int i = 0; i < 27; ++i) {
       const std::int32_t contact = link.slot[i] < 0 ? -1 : workspace.slots[link.slot[i]].contact;
@@ -208,40 +188,37 @@ std::array<NodeRecord*, 27> filter_of(Workspace& workspace, const GroupLinks& li
 // XPIC(k), see transfer/xpic.hpp. With Q the pass to the particles and back to the grid, v_r = Q^(r-1) v_1 and
 // v* = sum_r (-1)^(r+1) C(k, r) Q^(r-1) v_1 = sum_{j=0..k-1} (1 - Q)^j v_1, so that k - 1 times v* <- v_1 + (1 - Q) v*.
 void filter_velocities(const Model& model, State& state, Workspace& workspace) {
-  const std::int64_t count = static_cast<std::int64_t>(workspace.nodes.size());
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-  for (std::int64_t i = 0; i < count; ++i) {
+  for_nodes(workspace, [&](std::int64_t i) {
     for (int c = 0; c < 4; ++c) workspace.filter[i].f[c] = 0;
     for (int c = 0; c < 3; ++c) workspace.filter[i].v[c] = workspace.nodes[i].v[3] > 0 ? workspace.nodes[i].v[c] : 0;
     workspace.filter[i].v[3] = 0;
-  }
+  });
   unfold_filter(workspace);
   const auto pass = workspace.kernels->optional->filter_velocity[static_cast<int>(model.numerics.shape_function)];
   for (int r = 1; r < model.numerics.xpic_order; ++r) {
     for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
-      if (link.rigid) return;
+      if (link.guided) return;
       const auto filter = filter_of(workspace, link);
       NodeRecord* nodes[27];
       std::copy(filter.begin(), filter.end(), nodes);
       pass(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link), nodes);
     });
     fold_filter(workspace);
-#pragma omp parallel for num_threads(workspace.threads) schedule(static)
-    for (std::int64_t i = 0; i < count; ++i) {
+    for_nodes(workspace, [&](std::int64_t i) {
       NodeRecord& filter = workspace.filter[i];
       const NodeRecord& node = workspace.nodes[i];
       for (int c = 0; c < 3; ++c) {
         if (node.v[3] > 0) filter.v[c] += node.v[c] - filter.f[c] / node.v[3];
         filter.f[c] = 0;
       }
-    }
+    });
     unfold_filter(workspace);
   }
   workspace.filter_momentum = {};
   if (workspace.faces.empty()) return;
   for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
-    if (workspace.slots[s].rigid >= 0) continue;
-    for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i)
+    if (workspace.slots[s].guided()) continue;
+    for (std::size_t i = s * block_nodes; i < s * block_nodes + static_cast<std::size_t>(workspace.nodes_in_use); ++i)
       for (int c = 0; c < 3; ++c)
         workspace.filter_momentum[c] += workspace.nodes[i].v[3] * (workspace.filter[i].v[c] - workspace.nodes[i].v[c]);
   }
@@ -266,7 +243,8 @@ void filtered_velocities(Workspace& workspace) {
 // Momentum to velocity. There is no mass cut-off: a node with ever so little mass has a force in proportion, and dropping
 // it would lose momentum.
 void nodal_velocities(Workspace& workspace) {
-  for_nodes(workspace, [&](NodeRecord& node) {
+  for_nodes(workspace, [&](std::int64_t i) {
+    NodeRecord& node = workspace.nodes[i];
     if (!(node.v[3] > 0)) return;
     const double inverse = 1.0 / node.v[3];
     for (int c = 0; c < 3; ++c) node.v[c] *= inverse;
@@ -276,7 +254,7 @@ void nodal_velocities(Workspace& workspace) {
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt) {
   const auto map = workspace.kernels->map_internal_force[static_cast<int>(model.numerics.shape_function)];
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
-    if (link.rigid) return;
+    if (link.guided) return;
     map(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link));
   });
 }
@@ -284,32 +262,27 @@ void map_internal_force(const Model& model, State& state, Workspace& workspace, 
 void update_stress(const Model& model, State& state, Workspace& workspace, double dt) {
   const int shape = static_cast<int>(model.numerics.shape_function);
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
-    if (link.rigid) return;
+    if (link.guided) return;
     const Material& material = model.material_of(link.body);
     workspace.kernels->update_stress[shape][static_cast<int>(material.strength)][static_cast<int>(material.eos)](
         kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
         workspace.materials[link.body], workspace.stress_sums[index]);
   });
-  for (std::size_t l = 0; l < workspace.links.size(); ++l) {
-    if (workspace.links[l].rigid) continue;
-    const StressSums& sums = workspace.stress_sums[l];
-    const int b = workspace.links[l].body;
-    state.bodies[b].drifted = state.bodies[b].drifted || sums.outside;
-    BodyTotals& totals = state.bodies[b].totals;
-    totals.plastic_dissipation += sums.plastic_dissipation;
-    totals.viscous_dissipation += sums.viscous_dissipation;
-    totals.failure_loss += sums.failure_loss;
-    totals.failed_mass += sums.failed_mass;
-    if (sums.failed_particles > 0 && totals.first_failure_time < 0) totals.first_failure_time = state.time + dt;
-    totals.failed_particles += sums.failed_particles;
-    if (sums.bad_particle >= 0) {
-      const double ratio = state.bodies[b].volume_ratio[sums.bad_particle];
-      throw breakdown(model, state, b, sums.bad_particle,
-                      "volume ratio must be positive and finite, got " + std::to_string(ratio),
-                      ratio < 1 ? "it was crushed in one step: a smaller time_step_factor may help"
-                                : "torn or not a number, from a time step that is too large or data of no real material");
-    }
+  book_stress(model, state, workspace, dt);
+}
+
+// In an axisymmetric model the sum of the radial momenta, which is no momentum of the whole body, is changed by the hoop
+// stress. It is the sum of the internal forces along x, as all others of theirs vanish; the axis is held to give it.
+void book_hoop_force(const Model& model, State& state, const Workspace& workspace, double dt) {
+  if (!model.grid.axisymmetric()) return;
+  double force = 0;
+  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
+    if (workspace.slots[s].guided()) continue;
+    double part = 0;
+    for (int n = 0; n < workspace.nodes_in_use; ++n) part += workspace.nodes[s * block_nodes + n].f[0];
+    force += part;
   }
+  state.ledger.boundary_impulse[0] += force * dt;
 }
 
 bool any_loads(const Model& model, const State& state) {
@@ -322,45 +295,16 @@ void map_external_force(const Model& model, State& state, Workspace& workspace) 
   for (LoadState& load : state.loads) load.force = {};
   if (!any_loads(model, state)) return;
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
-    if (particles_loaded(model, state, link.body)) map_loads(model, state, workspace, index);
+    if (!link.guided && particles_loaded(model, state, link.body)) map_loads(model, state, workspace, index);
   });
 }
 
 void measure_external_force(const Model& model, State& state, Workspace& workspace, double dt) {
   if (!any_loads(model, state)) return;
   for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
-    if (particles_loaded(model, state, link.body)) measure_loads(model, state, workspace, index, dt);
+    if (!link.guided && particles_loaded(model, state, link.body)) measure_loads(model, state, workspace, index, dt);
   });
   book_loads(model, state, workspace, dt);
-}
-
-// Node records become {velocity, mass | trial velocity}.
-void trial_velocities(const Model& model, Workspace& workspace, double dt) {
-  const Vector3 g = model.numerics.gravity;
-  for_nodes(workspace, [&](NodeRecord& node) {
-    if (!(node.v[3] > 0)) {
-      for (double& c : node.f) c = 0;
-      return;
-    }
-    const double factor = dt / node.v[3];
-    for (int c = 0; c < 3; ++c) node.f[c] = node.v[c] + node.f[c] * factor + g[c] * dt;
-  });
-}
-
-// Work at the mean of the velocities at the beginning and the end, as that of the loads (loads/loads.hpp).
-void book_gravity(const Model& model, State& state, const Workspace& workspace, double dt) {
-  const Vector3 g = model.numerics.gravity;
-  if (g == Vector3{}) return;
-  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
-    if (workspace.slots[s].rigid >= 0) continue;
-    for (std::size_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {
-      const NodeRecord& node = workspace.nodes[i];
-      for (int c = 0; c < 3; ++c) {
-        state.ledger.external_impulse[c] += node.v[3] * g[c] * dt;
-        state.ledger.external_work += 0.5 * node.v[3] * g[c] * dt * (node.v[c] + node.f[c]);
-      }
-    }
-  }
 }
 
 // From {velocity at the beginning, mass | velocity at the end} to {velocity at the end, 0 | acceleration, 0}, which is what
@@ -373,28 +317,22 @@ void book_gravity(const Model& model, State& state, const Workspace& workspace, 
 // The first sum is booked here, those over particles in the next phase.
 void accelerations(State& state, Workspace& workspace, double dt) {
   const double inverse = 1.0 / dt;
-  const std::int64_t slots = static_cast<std::int64_t>(workspace.slots.size());
-#pragma omp parallel num_threads(workspace.threads)
-  {
-    const FlushSubnormals flush;
-#pragma omp for schedule(static)
-    for (std::int64_t s = 0; s < slots; ++s) {
-      double given = 0;
-      workspace.slot_given[s] = 0;
-      if (workspace.slots[s].rigid >= 0) continue;
-      for (std::int64_t i = s * block_nodes; i < (s + 1) * block_nodes; ++i) {
-        NodeRecord& node = workspace.nodes[i];
-        for (int c = 0; c < 3; ++c) {
-          const double start = node.v[c], end = node.f[c];
-          given += node.v[3] * start * (end - start);
-          node.f[c] = (end - start) * inverse;
-          node.v[c] = end;
-        }
-        node.v[3] = node.f[3] = 0;
+  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+    double given = 0;
+    workspace.slot_given[s] = 0;
+    if (workspace.slots[s].guided()) return;
+    for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) {
+      NodeRecord& node = workspace.nodes[i];
+      for (int c = 0; c < 3; ++c) {
+        const double start = node.v[c], end = node.f[c];
+        given += node.v[3] * start * (end - start);
+        node.f[c] = (end - start) * inverse;
+        node.v[c] = end;
       }
-      workspace.slot_given[s] = given;
+      node.v[3] = node.f[3] = 0;
     }
-  }
+    workspace.slot_given[s] = given;
+  });
   for (const double given : workspace.slot_given) state.ledger.transfer_dissipation += given;
 }
 
@@ -403,28 +341,23 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
   const bool xpic = model.numerics.transfer == Transfer::Xpic;
   const auto update = workspace.kernels->update_particles[shape][model.numerics.affine()];
   const auto update_xpic = workspace.kernels->optional->update_particles_xpic[shape];
-  const std::int32_t count = static_cast<std::int32_t>(workspace.pencils.size());
-#pragma omp parallel num_threads(workspace.threads) if (count > 1)
-  {
-    const FlushSubnormals flush;
-#pragma omp for schedule(dynamic, 1)
-    for (std::int32_t p = 0; p < count; ++p)
-      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
-        const GroupLinks& link = workspace.links[l];
-        workspace.move_sums[l] = {};
-        if (link.rigid) continue;
-        if (xpic) {
-          const auto filter = filter_of(workspace, link);
-          NodeRecord* nodes[27];
-          std::copy(filter.begin(), filter.end(), nodes);
-          update_xpic(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), nodes,
-                      workspace.move_sums[l]);
-          continue;
-        }
-        update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
-               workspace.move_sums[l]);
+  for_each_in_turn(workspace.threads, 0, static_cast<std::int64_t>(workspace.pencils.size()), [&](std::int64_t p) {
+    for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
+      const GroupLinks& link = workspace.links[l];
+      workspace.move_sums[l] = {};
+      if (link.guided) continue;
+      if (xpic) {
+        const auto filter = filter_of(workspace, link);
+        NodeRecord* nodes[27];
+        std::copy(filter.begin(), filter.end(), nodes);
+        update_xpic(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), nodes,
+                    workspace.move_sums[l]);
+        continue;
       }
-  }
+      update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
+             workspace.move_sums[l]);
+    }
+  });
   for (BodyState& body : state.bodies) body.totals.maximum_speed = 0;
   for (std::size_t l = 0; l < workspace.links.size(); ++l) {
     BodyState& body = state.bodies[workspace.links[l].body];
@@ -440,16 +373,17 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
 }  // namespace
 
 void prepare_state(const Model& model, State& state, Workspace& workspace) {
-  workspace.kernels = &kernel_table();
+  workspace.kernels = model.grid.planar() ? kernel_table().planar : &kernel_table();
+  workspace.nodes_in_use = model.grid.planar() ? layer_nodes : block_nodes;
   workspace.materials.clear();
   for (const Body& body : model.bodies)
     workspace.materials.push_back(kernel_material(model.materials[body.material], model.grid.cell_size));
-  for (std::size_t b = 0; b < state.bodies.size(); ++b)
-    allocate_transfer(model, static_cast<int>(b), state.bodies[b]);
   workspace.contact_needs = contact_needs(model);
   prepare_surfaces(model, workspace);
   bool fresh = false;
   for (const BodyState& body : state.bodies) fresh = fresh || (body.groups.empty() && body.particles > 0);
+  prepare_lagrangian(model, state, workspace, fresh);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) allocate_transfer(model, static_cast<int>(b), state.bodies[b]);
   if (fresh) {
     prepare_rigid(model, state);
     for (std::size_t b = 0; b < state.bodies.size(); ++b)

@@ -21,10 +21,10 @@ double limit(const Model& model, const State& state, double fastest) {
 }  // namespace
 
 double stable_time_step(const Model& model, const State& state, const Workspace& workspace) {
-  double fastest = workspace.rigid_speed;
+  double fastest = std::max(workspace.rigid_speed, workspace.lagrangian_speed);
   for (std::size_t l = 0; l < workspace.links.size(); ++l)
-    if (!workspace.links[l].rigid) fastest = std::max(fastest, workspace.stress_sums[l].fastest);
-  if (workspace.links.empty()) return state.stable_time_step;  // nothing is left to be fast
+    if (!workspace.links[l].guided) fastest = std::max(fastest, workspace.stress_sums[l].fastest);
+  if (workspace.links.empty() && !workspace.reference_grid) return state.stable_time_step;  // nothing is left to be fast
   return limit(model, state, fastest);
 }
 
@@ -36,6 +36,7 @@ double initial_time_step(const Model& model, State& state, const Workspace& work
     const Material& rules = model.material_of(static_cast<int>(b));
     const double bulk = rules.eos == EquationOfState::MieGruneisen ? material.rho_c0_squared : material.K;
     double wave = model.bodies[b].rigid() ? 0 : std::sqrt((bulk + 4.0 / 3.0 * material.G) / material.density);
+    if (body.lagrangian) wave *= std::max(1.0, model.grid.cell_size / body.reference.critical_length);
     wave += 2.0 * material.viscosity_linear * wave;  // bulk viscosity slows the step once something is compressed
     double speed_squared = 0;
     for (const Group& group : body.groups)

@@ -18,7 +18,7 @@ import os
 
 import numpy as np
 
-from plot_common import Refused, run_main, summary_of
+from plot_common import Refused, run_main, scene_of, summary_of
 from plot_section import open_particles, particle_files, time_of
 
 EXPERIMENT = 0.84  # h/D
@@ -59,8 +59,9 @@ def largest_connected(position, cell):
     return (label == largest)[cell_of]
 
 
-def measure(name, parameters):
-    """The numbers of one particle file."""
+def measure(name, parameters, axisymmetric=False):
+    """The numbers of one particle file. The flight is along z from the axis on, of axisymmetric.toml along y."""
+    flight = 1 if axisymmetric else 2
     with open_particles(name) as file:
         time = float(file.attrs["time"])
         ball, plate = file["ball"], file["plate"]
@@ -71,11 +72,12 @@ def measure(name, parameters):
         mass = ball["mass"][()]
         ball_velocity = mass @ ball["velocity"][()] / mass.sum()
         ball_centre = mass @ ball["position"][()] / mass.sum()
-    highest = position[:, 2].max() + 0.5 * parameters["layer"]
-    lowest = position[:, 2].min() - 0.5 * parameters["layer"]
-    smallest = np.hypot(position[:, 0], position[:, 1]).min() - 0.5 * parameters["spacing"]
-    return {"time": time, "ball_velocity": ball_velocity[2], "h": highest - lowest, "D": 2 * max(smallest, 0.0),
-            "through": bool(ball_centre[2] > highest and ball_velocity[2] > 0), "failed": int(failed.sum()), "debris": int((~kept).sum())}
+    highest = position[:, flight].max() + 0.5 * parameters["layer"]
+    lowest = position[:, flight].min() - 0.5 * parameters["layer"]
+    radius = position[:, 0] if axisymmetric else np.hypot(position[:, 0], position[:, 1])
+    smallest = radius.min() - 0.5 * parameters["spacing"]
+    return {"time": time, "ball_velocity": ball_velocity[flight], "h": highest - lowest, "D": 2 * max(smallest, 0.0),
+            "through": bool(ball_centre[flight] > highest and ball_velocity[flight] > 0), "failed": int(failed.sum()), "debris": int((~kept).sum())}
 
 
 def measure_run(directory, at=None):
@@ -87,7 +89,8 @@ def measure_run(directory, at=None):
                       f"{', '.join(missing)})")
     files = particle_files([directory])
     chosen = files[-1] if at is None else min(files, key=lambda name: abs(time_of(name) - at))
-    return measure(chosen, parameters), parameters
+    axisymmetric = scene_of(directory).get("grid", {}).get("space") == "axisymmetric"
+    return measure(chosen, parameters, axisymmetric), parameters
 
 
 def model_of(parameters):

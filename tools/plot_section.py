@@ -34,10 +34,19 @@ DRAWN_SIZE = 1.45  # of a particle's edge: discs of this diameter close the gaps
 STRAIN_COLOURS = LinearSegmentedColormap.from_list("strain", ["#d3d9df", "#f3d274", "#ea7a2c", "#a81820", "#3a0710"])
 
 
+def particle_edges(volume, position, grid):
+    """Edges of cubes of the particles' volumes; in a two-dimensional scene of squares of their sections."""
+    if grid.get("space") == "axisymmetric":
+        return np.sqrt(volume / (2 * np.pi * position[:, 0]))
+    if grid.get("space") == "plane_strain":
+        return np.sqrt(volume / float(grid.get("thickness", 1.0)))
+    return np.cbrt(volume)
+
+
 class Body:
     """One body's particles near the plane."""
 
-    def __init__(self, group, field, axis, offset, thickness):
+    def __init__(self, group, field, axis, offset, thickness, grid):
         self.name = group.attrs.get("name", group.name.strip("/"))
         if isinstance(self.name, bytes):
             self.name = self.name.decode()
@@ -47,7 +56,7 @@ class Body:
         self.speed = np.linalg.norm(mass @ velocity) / mass.sum() if len(mass) else 0.0
         self.momentum = mass @ velocity if len(mass) else np.zeros(3)
         volume = group["volume"][()] if "volume" in group else np.full(len(position), np.nan)
-        spacing = np.cbrt(volume)
+        spacing = particle_edges(volume, position, grid)
         self.spacing = float(np.nanmedian(spacing)) if np.isfinite(spacing).any() else 1.0
         distance = np.abs(position[:, axis] - offset)
         near = distance <= (thickness or 2 * self.spacing)
@@ -111,9 +120,9 @@ def time_of(name):
         return float(file.attrs["time"])
 
 
-def read_bodies(name, field, axis, offset, thickness):
+def read_bodies(name, field, axis, offset, thickness, grid):
     with open_particles(name) as file:
-        return [Body(group, field, axis, offset, thickness) for group in file.values()
+        return [Body(group, field, axis, offset, thickness, grid) for group in file.values()
                 if isinstance(group, h5py.Group) and "position" in group and len(group["position"])]
 
 
@@ -167,7 +176,7 @@ def main():
     parser.add_argument("-o", "--output", default="section.png", help="picture to write (default section.png)")
     parser.add_argument("--field", default="plastic_strain",
                         help="plastic_strain (default), von_mises, pressure, temperature, speed, stress.xx, ...")
-    parser.add_argument("--plane", default="y=0", help="section plane, for example x=1.5 (default y=0)")
+    parser.add_argument("--plane", help="section plane, for example x=1.5 (default y=0, of two-dimensional scenes z=0)")
     parser.add_argument("--mesh-width", type=float, help="half thickness of the section (default: the scene's cell)")
     parser.add_argument("--times", type=float, nargs="+", help="instants, in the run's unit of time")
     parser.add_argument("--count", type=int, default=4, help="instants spread over the run (default 4; 0: all)")
@@ -180,17 +189,20 @@ def main():
     parser.add_argument("--dpi", type=int, default=150)
     arguments = parser.parse_args()
 
+    chosen = choose(particle_files(arguments.inputs), arguments)
+    directory = os.path.dirname(chosen[0][1]) or "."
+    grid = scene_of(directory).get("grid", {})
     try:
+        arguments.plane = arguments.plane or ("z=0" if grid.get("space", "three_dimensional") != "three_dimensional" else "y=0")
         name, offset = arguments.plane.split("=")
         axis, offset = AXES.index(name.strip()), float(offset)
     except ValueError:
         raise Refused(f"--plane {arguments.plane}: expected for example y=0") from None
 
-    chosen = choose(particle_files(arguments.inputs), arguments)
-    directory = os.path.dirname(chosen[0][1]) or "."
     units = Units(directory)
-    thickness = arguments.mesh_width or scene_of(directory).get("grid", {}).get("cell_size")
-    instants = [read_bodies(name, arguments.field, axis, offset, thickness) for _, name in chosen]
+    cell = grid.get("cell_size")
+    thickness = arguments.mesh_width or (cell if isinstance(cell, (int, float)) else None)  # an expression is not worked out
+    instants = [read_bodies(name, arguments.field, axis, offset, thickness, grid) for _, name in chosen]
     if not any(len(body.position) for bodies in instants for body in bodies):
         raise Refused(f"no particle is near {arguments.plane}")
     with_field = [body.value for bodies in instants for body in bodies if body.value is not None and len(body.value)]

@@ -24,6 +24,9 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_FACE_FREE = 0
   integer(c_int32_t), parameter :: OGIVE_FACE_SYMMETRY = 1
   integer(c_int32_t), parameter :: OGIVE_FACE_FIXED = 2
+  integer(c_int32_t), parameter :: OGIVE_SPACE_THREE_DIMENSIONAL = 0
+  integer(c_int32_t), parameter :: OGIVE_SPACE_PLANE_STRAIN = 1
+  integer(c_int32_t), parameter :: OGIVE_SPACE_AXISYMMETRIC = 2
   integer(c_int32_t), parameter :: OGIVE_SHAPE_LINEAR = 0
   integer(c_int32_t), parameter :: OGIVE_SHAPE_QUADRATIC_BSPLINE = 1
   integer(c_int32_t), parameter :: OGIVE_SHAPE_GIMP = 2
@@ -44,6 +47,8 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_STRENGTH_NEO_HOOKEAN = 1
   integer(c_int32_t), parameter :: OGIVE_STRENGTH_J2_POWER = 2
   integer(c_int32_t), parameter :: OGIVE_STRENGTH_JOHNSON_COOK = 3
+  integer(c_int32_t), parameter :: OGIVE_STRENGTH_J2_MIXED = 4
+  integer(c_int32_t), parameter :: OGIVE_STRENGTH_J2_MULTIPLICATIVE = 5
   integer(c_int32_t), parameter :: OGIVE_EOS_LINEAR = 0
   integer(c_int32_t), parameter :: OGIVE_EOS_MIE_GRUNEISEN = 1
   integer(c_int32_t), parameter :: OGIVE_FAILURE_NONE = 0
@@ -51,6 +56,9 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_FORMULATION_DEFORMABLE = 0
   integer(c_int32_t), parameter :: OGIVE_FORMULATION_RIGID_FREE = 1
   integer(c_int32_t), parameter :: OGIVE_FORMULATION_RIGID_PRESCRIBED = 2
+  integer(c_int32_t), parameter :: OGIVE_FORMULATION_TOTAL_LAGRANGIAN = 3
+  integer(c_int32_t), parameter :: OGIVE_DISTORTED_UPDATE = 0
+  integer(c_int32_t), parameter :: OGIVE_DISTORTED_STOP = 1
   integer(c_int32_t), parameter :: OGIVE_SOLID_BOX = 0
   integer(c_int32_t), parameter :: OGIVE_SOLID_CYLINDER = 1
   integer(c_int32_t), parameter :: OGIVE_SOLID_SPHERE = 2
@@ -102,6 +110,9 @@ module ogive_c
     real(c_double) :: domain_min(3)
     real(c_double) :: domain_max(3)
     integer(c_int32_t) :: face(6)
+    integer(c_int32_t) :: space
+    integer(c_int32_t) :: reserved1
+    real(c_double) :: thickness
   end type ogive_grid_def
 
   type, bind(C) :: ogive_numerics_def
@@ -171,6 +182,7 @@ module ogive_c
     real(c_double) :: failure_strain
     real(c_double) :: viscosity_linear
     real(c_double) :: viscosity_quadratic
+    real(c_double) :: isotropic_fraction
   end type ogive_material_def
 
   type, bind(C) :: ogive_body_def
@@ -181,6 +193,9 @@ module ogive_c
     real(c_double) :: angular_centre(3)
     integer(c_int32_t) :: formulation
     integer(c_int32_t) :: reserved0
+    real(c_double) :: distortion_limit
+    integer(c_int32_t) :: when_distorted
+    integer(c_int32_t) :: reserved1
   end type ogive_body_def
 
   type, bind(C) :: ogive_solid_def
@@ -270,6 +285,7 @@ module ogive_c
     real(c_double) :: energy_growth
     real(c_double) :: energy_growth_time
     real(c_double) :: energy_warning_time
+    real(c_double) :: contact_dissipation
   end type ogive_ledger
 
   type, bind(C) :: ogive_body_result
@@ -297,6 +313,8 @@ module ogive_c
     real(c_double) :: maximum_temperature
     real(c_double) :: angular_momentum(3)
     real(c_double) :: angular_velocity(3)
+    integer(c_int32_t) :: formulation
+    integer(c_int32_t) :: reserved1
   end type ogive_body_result
 
   type, bind(C) :: ogive_load_result

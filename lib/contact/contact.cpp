@@ -20,6 +20,10 @@
 // all impulses as one rigid body. Its mass is shared between its nodes and pairs in proportion to their nodal mass (a
 // part theta each), so that a pair meets 1/theta times the inverse effective mass n . (1/M + [r] I^-1 [r]^T) . n.
 //
+// Total Lagrangian bodies couple nodes likewise: after each sweep they take all impulses through their own nodes, and show
+// what became of them (lagrangian/contact.hpp). They have no strain from the grid: among themselves, with rigid bodies and walls
+// all of their contact is in the second phase, and like those they may approach until the gap is closed.
+//
 // The gap. A body whose flat surface lies at distance s from a node fills a known part of that node's shape
 // function; inverting that gives s from the nodal volume, and the gap of a pair is s_a + s_b. It vanishes exactly when the
 // two bodies together fill the node (docs/theory.md). A wall's s is its distance itself.
@@ -45,6 +49,10 @@ constexpr int most_sweeps = 50;           // of a node
 constexpr double sweep_tolerance = 1e-10;
 constexpr int most_coupled_sweeps = 300;  // of the nodes of free rigid bodies
 constexpr double coupled_tolerance = 1e-11;
+// Of the nodes of total Lagrangian bodies, where what is missing falls ever more slowly: docs/decisions.md. They answer an
+// impulse by less than their mass lets expect, so that more is asked for; below 2 that is stable.
+constexpr int most_lagrangian_sweeps = 8;
+constexpr double lagrangian_tolerance = 1e-3, lagrangian_relaxation = 1.5;
 
 // ------------------------------------------------------------------------------------------------------------- finding
 
@@ -56,7 +64,7 @@ class Finder {
   void find(const MixedBlock& block, BlockContacts& contacts) {
     contacts.clear();
     have_cloud_ = false;
-    for (int node = 0; node < block_nodes; ++node) {
+    for (int node = 0; node < workspace_.nodes_in_use; ++node) {
       ContactNode at;
       at.node = node;
       at.first_field = static_cast<std::int32_t>(contacts.fields.size());
@@ -78,7 +86,9 @@ class Finder {
 
  private:
   void collect_fields(const MixedBlock& block, ContactNode& at, BlockContacts& contacts) {
-    const double h = model_.grid.cell_size, cell_volume = h * h * h;
+    // The sums of a two-dimensional model are those of the section.
+    const bool planar = model_.grid.planar();
+    const double h = model_.grid.cell_size, cell_volume = planar ? h * h : h * h * h;
     for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) {
       const Slot& slot = workspace_.slots[s];
       const NodeRecord& record = workspace_.nodes[static_cast<std::size_t>(s) * block_nodes + at.node];
@@ -90,17 +100,19 @@ class Finder {
       field.body = slot.field;
       field.rigid = slot.rigid;
       field.fixed = slot.rigid >= 0 && workspace_.rigid[slot.rigid].prescribed;
-      if (slot.rigid >= 0 && !field.fixed) at.coupled = true;
+      field.lagrangian = slot.lagrangian;
+      if (slot.guided() && !field.fixed) at.coupled = true;
       field.mass = record.v[3];
       field.fill = sums.volume / cell_volume;
-      const double inverse_density = 1.0 / model_.material_of(slot.field).density;
+      const double density = model_.material_of(slot.field).density, inverse_density = 1.0 / density;
       for (int c = 0; c < 3; ++c) {
         field.outward[c] = sums.gradient[c];
         field.gradient[c] = sums.gradient[c] * inverse_density;
       }
       // Deep inside a body the gradient is round-off.
       const double steepness = length(field.outward) * model_.grid.cell_size;
-      if (!(steepness > least_steepness * field.mass && make_unit(field.outward))) field.outward = {};
+      const double mass = planar ? sums.volume * density : field.mass;
+      if (!(steepness > least_steepness * mass && make_unit(field.outward))) field.outward = {};
       if (workspace_.contact_needs.occupied)
         for (int cell = 0; cell < 8; ++cell)
           if (workspace_.occupied[place] >> cell & 1)
@@ -143,7 +155,7 @@ class Finder {
         pair.b = b;
         pair.method = &contact_method(rule.method);
         if (pair.method->has_friction) pair.friction = rule.friction;
-        pair.strains = first.rigid < 0 || (!wall && second.rigid < 0);
+        pair.strains = first.by_grid() || second.by_grid();
         pair.by_surface = by_surface(rule);
         if (!wall && pair.method->needs_normal &&
             std::min(first.mass, second.mass) < smallest_mass_share * (first.mass + second.mass))
@@ -172,10 +184,22 @@ class Finder {
                                     : 0.5 * (surface_distance(shape, second.fill) - surface_distance(shape, first.fill));
           pair.beside = times(along * h, pair.normal);
         }
+        if (!pair.strains && (first.lagrangian || second.lagrangian)) {
+          pair.booked = true;
+          pair.mapped = minus(mapped_velocity(first, pair, at), mapped_velocity(second, pair, at));
+        }
         if (pair.method->remembers) pair.pressed = remembers(state_.contact_memory, at.index, first.body, second.body);
         contacts.pairs.push_back(pair);
         ++at.pairs;
       }
+  }
+
+  // Before the step's forces.
+  Vector3 mapped_velocity(const ContactField& field, const ContactPair& pair, const ContactNode& at) const {
+    if (field.slot < 0) return {};
+    const double* v = workspace_.nodes[static_cast<std::size_t>(field.slot) * block_nodes + at.node].v;
+    const Vector3 velocity = {v[0], v[1], v[2]};
+    return field.rigid < 0 ? velocity : plus(velocity, cross(workspace_.rigid[field.rigid].spin, pair.beside));
   }
 
   bool normal_of(const MixedBlock& block, const ContactRule& rule, const ContactNode& at, const ContactField& first,
@@ -194,6 +218,10 @@ class Finder {
   bool into_faces(const ContactNode& at, Vector3& normal) const {
     // In a symmetry plane the normal lies in the plane; the sums say so, other rules to round-off.
     bool changed = false;
+    if (model_.grid.planar() && normal[2] != 0) {
+      normal[2] = 0;
+      changed = true;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const double cells = (model_.grid.domain_max[axis] - model_.grid.domain_min[axis]) / model_.grid.cell_size;
       const bool on_face = (model_.grid.face[2 * axis] != Face::Free && at.index[axis] == 0) ||
@@ -342,7 +370,7 @@ double sweep(BlockContacts& contacts, const ContactNode& node, const std::vector
   }
   for (int f = 0; f < node.fields; ++f) {
     ContactField& field = fields[f];
-    if (!field.fixed && field.rigid < 0) add(field.velocity, times(1 / field.mass, field.change));
+    if (!field.fixed && field.rigid < 0 && !field.lagrangian) add(field.velocity, times(1 / field.mass, field.change));
   }
   return worst;
 }
@@ -385,13 +413,20 @@ void measure_work(BlockContacts& contacts, const ContactNode& node, const std::v
     pair.contact_work = (heat ? 0 : tangential_work) - (pair.normal_impulse + pair.start_push) * dot(pair.normal, mean);
     contacts.friction_dissipation += pair.friction_dissipation;
     contacts.contact_work += pair.contact_work;
+    // Central differences: an impulse at a time does the work of the mean of the velocities half a step before and after it.
+    if (pair.booked) {
+      const Vector3 about = times(0.5, plus(pair.mapped, relative_velocity(a, b, pair, rigid)));
+      contacts.contact_dissipation -= dot(impulse_on_a(pair), about) + pair.friction_dissipation;
+    }
   }
 }
 
-// The nodes of free rigid bodies.
+// The nodes of free rigid and total Lagrangian bodies.
 class CoupledNodes {
  public:
-  CoupledNodes(Workspace& workspace, std::vector<RigidMotion>& rigid) : workspace_(workspace), rigid_(rigid) {}
+  // Impulses on total Lagrangian bodies are kept where `moves`.
+  CoupledNodes(Workspace& workspace, std::vector<RigidMotion>& rigid, bool moves)
+      : workspace_(workspace), rigid_(rigid), moves_(moves) {}
 
   void solve() {
     for (std::size_t i = 0; i < workspace_.mixed.size(); ++i)
@@ -400,7 +435,13 @@ class CoupledNodes {
     if (nodes_.empty()) return;
     share_masses();
     std::vector<Vector3> impulse(rigid_.size()), moment(rigid_.size());
-    for (int pass = 0; pass < most_coupled_sweeps; ++pass) {
+    const bool lagrangian = !workspace_.lagrangian_contact.empty();
+    bool free_rigid = false;
+    for (const RigidMotion& body : rigid_) free_rigid = free_rigid || !body.prescribed;
+    if (lagrangian && !free_rigid) relax();
+    const int most = free_rigid ? most_coupled_sweeps : most_lagrangian_sweeps;
+    const double tolerance = lagrangian ? lagrangian_tolerance : coupled_tolerance;
+    for (int pass = 0; pass < most; ++pass) {
       double worst = 0, scale = 0;
       std::fill(impulse.begin(), impulse.end(), Vector3{});
       std::fill(moment.begin(), moment.end(), Vector3{});
@@ -421,7 +462,8 @@ class CoupledNodes {
         for_free_rigid(*contacts, *node,
                        [&](ContactField& field) { field.velocity = rigid_[field.rigid].velocity_at(place); });
       }
-      if (worst <= coupled_tolerance * scale) break;
+      push_lagrangian();
+      if (worst <= tolerance * scale) break;
     }
     for (const auto& [contacts, node] : nodes_) sum_up(*contacts, *node);
   }
@@ -431,6 +473,24 @@ class CoupledNodes {
   static void for_free_rigid(BlockContacts& contacts, const ContactNode& node, Work&& work) {
     for (int f = node.first_field; f < node.first_field + node.fields; ++f)
       if (contacts.fields[f].rigid >= 0 && !contacts.fields[f].fixed) work(contacts.fields[f]);
+  }
+
+  void push_lagrangian() {
+    LagrangianContact& contact = workspace_.lagrangian_contact;
+    if (contact.empty()) return;
+    for (LagrangianContact::Field& field : contact.fields)
+      field.impulse = workspace_.block_contacts[field.block].fields[field.field].change;
+    contact.apply(workspace_, moves_ ? &contact.total : nullptr);
+    for (const LagrangianContact::Field& field : contact.fields)
+      add(workspace_.block_contacts[field.block].fields[field.field].velocity, field.change);
+  }
+
+  void relax() {
+    for (const auto& [contacts, node] : nodes_)
+      for (int p = node->first_pair; p < node->first_pair + node->pairs; ++p) {
+        contacts->pairs[p].reduced_normal *= lagrangian_relaxation;
+        contacts->pairs[p].reduced_tangential *= lagrangian_relaxation;
+      }
   }
 
   void share_masses() {
@@ -473,6 +533,7 @@ class CoupledNodes {
 
   Workspace& workspace_;
   std::vector<RigidMotion>& rigid_;
+  const bool moves_;
   std::vector<std::pair<BlockContacts*, ContactNode*>> nodes_;
 };
 
@@ -491,7 +552,7 @@ double* velocity_record(Workspace& workspace, const ContactField& field, const C
 
 // Loads velocities, decides, and solves all nodes.
 void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Phase& phase) {
-  bool any_free = false;
+  bool any_free = !workspace.lagrangian_contact.empty();
   for (const RigidMotion& body : rigid) any_free = any_free || !body.prescribed;
   for_blocks(workspace, [&](BlockContacts& contacts) {
     for (ContactNode& node : contacts.nodes) {
@@ -516,7 +577,7 @@ void solve_phase(Workspace& workspace, std::vector<RigidMotion>& rigid, const Ph
       sum_up(contacts, node);
     }
   });
-  if (any_free) CoupledNodes(workspace, rigid).solve();
+  if (any_free) CoupledNodes(workspace, rigid, phase.use != StartUse::Strain).solve();
 }
 
 // Momentum that walls and rigid bodies take, and the forces on bodies.
@@ -576,6 +637,7 @@ void book_energies(State& state, const Workspace& workspace) {
   for (std::size_t i = 0; i < workspace.mixed.size(); ++i) {
     state.ledger.friction_dissipation += workspace.block_contacts[i].friction_dissipation;
     state.ledger.contact_work += workspace.block_contacts[i].contact_work;
+    state.ledger.contact_dissipation += workspace.block_contacts[i].contact_dissipation;
   }
 }
 
@@ -657,6 +719,7 @@ void find_contacts(const Model& model, const State& state, Workspace& workspace)
   if (workspace.contact_needs.surface) find_points(model, state, workspace);
   for (const MixedBlock& block : workspace.mixed)
     for (std::int32_t s = block.first_slot; s < block.first_slot + block.count; ++s) workspace.slot_contact_force[s] = {};
+  workspace.lagrangian_contact.find(model, state, workspace);
 }
 
 void solve_node(BlockContacts& contacts, ContactNode& node, const std::vector<RigidMotion>& rigid) {
@@ -689,9 +752,12 @@ void start_contact(const Model& model, State& state, Workspace& workspace, doubl
       for (int f = 0; f < node.fields; ++f) fields[f].kept = fields[f].impulse = fields[f].couple = {};
       for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
         ContactPair& pair = contacts.pairs[p];
-        pair.mapped = pair.found;
+        if (!pair.booked) pair.mapped = pair.found;
         ContactField &a = fields[pair.a], &b = fields[pair.b];
         pair.adjusted = relative_velocity(a, b, pair, rigid);
+        // Without a first phase of its own the pair is shown what that would have left.
+        if (pair.booked && pair.method->at_start && !pair.method->start_reaches_particles)
+          add(pair.adjusted, times(-std::max(dot(pair.adjusted, pair.normal), 0.0), pair.normal));
         if (pair.constraint.hold == Hold::Nothing) continue;
         // `impulse` is what reaches the particles, `kept` the momentum that does not.
         const Vector3 impulse = impulse_on_a(pair), couple = cross(pair.beside, impulse);
@@ -707,7 +773,7 @@ void start_contact(const Model& model, State& state, Workspace& workspace, doubl
         if (field.slot < 0) continue;
         double* v = velocity_record(workspace, field, node, false);
         for (int c = 0; c < 3; ++c) v[c] = field.velocity[c];
-        if (field.rigid >= 0) continue;
+        if (!field.by_grid()) continue;
         field.kept = times(-1 / field.mass, field.kept);
         field.returned = times(-1 / field.mass, field.impulse);
       }
@@ -717,6 +783,12 @@ void start_contact(const Model& model, State& state, Workspace& workspace, doubl
   if (use == StartUse::Strain) return;
   const double grid_part =
       model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction();
+  if (workspace.contact_needs.start_kept && !workspace.lagrangian_contact.empty()) {
+    LagrangianContact& contact = workspace.lagrangian_contact;
+    for (LagrangianContact::Field& field : contact.fields)
+      field.impulse = times(1 - grid_part, workspace.block_contacts[field.block].fields[field.field].kept);
+    contact.apply(workspace, &contact.kept);
+  }
   for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
     for (ContactNode& node : workspace.block_contacts[i].nodes)
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
@@ -745,7 +817,7 @@ void return_start(Workspace& workspace) {
     for (const ContactNode& node : contacts.nodes)
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         const ContactField& field = contacts.fields[f];
-        if (field.slot < 0 || field.rigid >= 0) continue;
+        if (!field.by_grid()) continue;
         double* v = velocity_record(workspace, field, node, false);
         for (int c = 0; c < 3; ++c) v[c] += field.returned[c];
       }
@@ -756,7 +828,7 @@ void return_start(Workspace& workspace) {
 void end_contact(const Model& model, State& state, Workspace& workspace, double dt) {
   solve_phase(workspace, workspace.rigid, {true, StartUse::MotionAndStrain, dt});
   for_blocks(workspace, [&](BlockContacts& contacts) {
-    contacts.friction_dissipation = contacts.contact_work = 0;
+    contacts.friction_dissipation = contacts.contact_work = contacts.contact_dissipation = 0;
     for (const ContactNode& node : contacts.nodes) {
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         ContactField& field = contacts.fields[f];
@@ -765,7 +837,7 @@ void end_contact(const Model& model, State& state, Workspace& workspace, double 
         const double* start = velocity_record(workspace, field, node, false);
         double* trial = velocity_record(workspace, field, node, true);
         for (int c = 0; c < 3; ++c) {
-          if (field.rigid < 0) field.behind[c] = 0.5 * (start[c] - field.before[c]) + field.kept[c];
+          if (field.by_grid()) field.behind[c] = 0.5 * (start[c] - field.before[c]) + field.kept[c];
           trial[c] = field.velocity[c];
         }
       }
@@ -801,7 +873,7 @@ void book_kept_start(State& state, const Workspace& workspace) {
     for (const ContactNode& node : workspace.block_contacts[i].nodes)
       for (int f = node.first_field; f < node.first_field + node.fields; ++f) {
         const ContactField& field = workspace.block_contacts[i].fields[f];
-        if (field.slot < 0 || field.rigid >= 0) continue;
+        if (!field.by_grid()) continue;
         const NodeRecord& record = workspace.nodes[static_cast<std::size_t>(field.slot) * block_nodes + node.node];
         for (int c = 0; c < 3; ++c) given += record.v[3] * field.kept[c] * (record.f[c] - record.v[c]);
       }

@@ -20,7 +20,7 @@ void NearbyParticles::gather(const Model& model, const State& state, const Works
     const Slot& slot = workspace.slots[s];
     for (std::int32_t i = workspace.slot_links_begin[s]; i < workspace.slot_links_begin[s + 1]; ++i) {
       const GroupLinks& link = workspace.links[workspace.slot_links[i]];
-      const BodyState& body = state.bodies[link.body];
+      const BodyState& body = workspace.particles_of(state, link.body);
       const Group& group = body.groups[link.group];
       for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
         std::array<Vector3, 8> images;

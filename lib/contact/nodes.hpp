@@ -38,6 +38,7 @@ struct ContactField {
   std::int32_t slot = -1;    // of the grid; -1: a wall
   std::int32_t body = -1;    // its velocity field; walls: -1 - index of the wall
   std::int32_t rigid = -1;   // index in Workspace::rigid; -1: deformable, or a wall
+  bool lagrangian = false;   // of a total Lagrangian body
   std::int32_t acting = 0;   // pairs that hold it in this phase
   bool fixed = false;        // infinite mass: walls and prescribed motion
   double mass = 0;           // as mapped
@@ -52,6 +53,9 @@ struct ContactField {
   Vector3 kept{}, kept_couple{};  // likewise, but it never reaches the particles
   Vector3 behind{};    // mean velocity of the step that the work of impulses is done at, less that of before and velocity
   Vector3 impulse{}, couple{};  // on it in this phase; the couple of impulses that act beside the node, on rigid bodies
+
+  // It moves with the common grid, from which it has its strain and its change of motion.
+  bool by_grid() const { return slot >= 0 && rigid < 0 && !lagrangian; }
 };
 
 struct ContactPair {
@@ -59,10 +63,11 @@ struct ContactPair {
   const ContactMethodDef* method = nullptr;
   Vector3 normal{};             // unit, out of a; zero where the method asks for none
   Vector3 beside{};             // from the node to the surface where the bodies meet; only where one of them is rigid
-  bool strains = true;          // one of the bodies deforms
+  bool strains = true;          // one of the bodies has its strain from the common grid
   bool by_surface = false;      // its normal is that of a surface
-  double gap = 0;               // length > 0 that two bodies that do not deform may still approach
+  double gap = 0;               // length > 0 that a pair without such a body may still approach
   double friction = 0;
+  bool booked = false;          // what it takes is exactly known: it joins a total Lagrangian body with no body of the grid
   bool pressed = false;         // its normal impulse pushed in the last step; after the second phase, in this one
   Vector3 mapped{}, adjusted{}; // v_a - v_b before and after the first phase of this step
   double start_push = 0;        // normal impulse of the first phase, where it reaches the particles: it bears friction too
@@ -80,7 +85,7 @@ struct ContactNode {
   std::array<std::int32_t, 3> index{};  // of the node in the grid, from domain_min
   Vector3 place{};
   std::int32_t first_field = 0, fields = 0, first_pair = 0, pairs = 0;
-  bool coupled = false;       // a free rigid body is here, which couples it to other nodes
+  bool coupled = false;       // a free rigid or total Lagrangian body is here, which couples it to other nodes
 };
 
 // All of one mixed block.
@@ -88,7 +93,7 @@ struct BlockContacts {
   std::vector<ContactField> fields;
   std::vector<ContactPair> pairs;
   std::vector<ContactNode> nodes;
-  double friction_dissipation = 0, contact_work = 0;
+  double friction_dissipation = 0, contact_work = 0, contact_dissipation = 0;
 
   void clear() {
     fields.clear();

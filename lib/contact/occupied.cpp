@@ -5,7 +5,7 @@
 namespace ogive {
 
 void mark_occupied(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link) {
-  const BodyState& body = state.bodies[link.body];
+  const BodyState& body = workspace.particles_of(state, link.body);
   const Group& group = body.groups[link.group];
   const double inverse = 1.0 / model.grid.cell_size;
   // Cells that hold a particle, in the coordinates of the group's tile: node t of the tile is node t - 1 of the block.

@@ -1,41 +1,14 @@
 // Loads on particles and driven nodes.
 #include "loads/loads.hpp"
 
-#define OGIVE_ISA_NAMESPACE loads
-#include "shape/weights.hpp"
+#include "shape/scalar_weights.hpp"
 
 namespace ogive {
 namespace {
 
-using Lanes = loads::Vec<4>;  // one an axis; the fourth is idle
-
-// Calls visit(node record, weight) for the nodes of a particle.
-template <class Shape, class Visit>
-void for_particle_nodes(Workspace& workspace, const GroupLinks& link, double inverse_cell, const double* x, Visit&& visit) {
-  Lanes xi{}, first, w[Shape::nodes], d[Shape::nodes];
-  for (int axis = 0; axis < 3; ++axis) loads::set_lane(xi, axis, (x[axis] - link.corner[axis]) * inverse_cell);
-  Shape::at(xi, first, w, d);
-  for (int k = 0; k < Shape::nodes; ++k)
-    for (int j = 0; j < Shape::nodes; ++j)
-      for (int i = 0; i < Shape::nodes; ++i) {
-        // Tile node t is node (t + 3) % 4 of neighbour block (t + 3) / 4 (transfer/tile.hpp).
-        const int t[3] = {static_cast<int>(first[0]) + i + 3, static_cast<int>(first[1]) + j + 3,
-                          static_cast<int>(first[2]) + k + 3};
-        const std::int32_t slot = link.slot[((t[2] >> 2) * 3 + (t[1] >> 2)) * 3 + (t[0] >> 2)];
-        const int node = ((t[2] & 3) * 4 + (t[1] & 3)) * 4 + (t[0] & 3);
-        visit(workspace.nodes[static_cast<std::size_t>(slot) * block_nodes + node], w[i][0] * w[j][1] * w[k][2]);
-      }
-}
-
-template <class Visit>
-void for_particle_nodes(const Model& model, Workspace& workspace, const GroupLinks& link, const double* x, Visit&& visit) {
-  const double inverse_cell = 1.0 / model.grid.cell_size;
-  switch (model.numerics.shape_function) {
-    case ShapeFunction::Linear: return for_particle_nodes<loads::LinearShape>(workspace, link, inverse_cell, x, visit);
-    case ShapeFunction::QuadraticBSpline:
-      return for_particle_nodes<loads::QuadraticBSplineShape>(workspace, link, inverse_cell, x, visit);
-    case ShapeFunction::Gimp: return for_particle_nodes<loads::GimpShape>(workspace, link, inverse_cell, x, visit);
-  }
+// Places of a body's particles on the grid.
+const AlignedVector<double>& places(const Workspace& workspace, const BodyState& body) {
+  return workspace.is_reference ? body.reference.position : body.position;
 }
 
 // Force per mass of the body's loads on particles, in the order of their bits.
@@ -118,7 +91,8 @@ void map_loads(const Model& model, const State& state, Workspace& workspace, std
     if (!body.force.empty())
       for (int c = 0; c < 3; ++c) force[c] += body.force[4 * p + c];
     if (force == Vector3{}) continue;
-    for_particle_nodes(model, workspace, link, x, [&](NodeRecord& node, double weight) {
+    for_nodes_of(model, link, &places(workspace, body)[4 * p], [&](std::int64_t at, double weight, const Vector3&) {
+      NodeRecord& node = workspace.nodes[at];
       for (int c = 0; c < 3; ++c) node.f[c] += weight * force[c];
     });
   }
@@ -135,7 +109,8 @@ void measure_loads(const Model& model, const State& state, Workspace& workspace,
     if ((body.loads.empty() || body.loads[p] == 0) && body.force.empty()) continue;
     const double* x = &body.position[4 * p];
     Vector3 mean{};
-    for_particle_nodes(model, workspace, link, x, [&](const NodeRecord& node, double weight) {
+    for_nodes_of(model, link, &places(workspace, body)[4 * p], [&](std::int64_t at, double weight, const Vector3&) {
+      const NodeRecord& node = workspace.nodes[at];
       for (int c = 0; c < 3; ++c) mean[c] += weight * (node.v[c] - 0.5 * dt * node.f[c]);
     });
     const auto add = [&](LoadSums& sum, const Vector3& force) {
@@ -154,7 +129,7 @@ void measure_loads(const Model& model, const State& state, Workspace& workspace,
 
 void book_loads(const Model& model, State& state, const Workspace& workspace, double dt) {
   for (const GroupLinks& link : workspace.links) {
-    if (!particles_loaded(model, state, link.body)) continue;
+    if (link.guided || !particles_loaded(model, state, link.body)) continue;
     const BodyLoads loads = loads_of(model, state, link.body);
     for (int k = 0; k <= loads.count; ++k) {
       const LoadSums& sums = workspace.load_sums[static_cast<std::size_t>(link.first_load_sum + k)];

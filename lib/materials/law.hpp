@@ -13,35 +13,17 @@
 // Failure: at eps_p >= failure_strain the deviator is zero and so is the pressure where the whole of it, cold and thermal
 //   part together, would be tension; the elastic energy that goes with them is booked as failure loss. (Dropping the cold
 //   part alone would let the heat of plastic work drive debris apart like a gas, to V / V0 of some hundred.)
-// Neo-Hookean: sigma = ((lambda ln J) I + G (F F^T - I)) / J, energy lambda/2 ln^2 J - G ln J + G/2 (tr F F^T - 3).
+// Laws of the deformation gradient: materials/finite_strain.hpp.
 // Bulk viscosity: q = rho h |d| (c_q h |d| + c_l c) while the volume shrinks at rate d; it acts on the grid and heats, and
 //   is no part of the stored stress.
 #pragma once
 
-#include "simd/lanes.hpp"
-#include "simd/vector_math.hpp"
-#include "transfer/kernels.hpp"
+#include "materials/finite_strain.hpp"
 
 namespace ogive {
 namespace OGIVE_ISA_NAMESPACE {
 
-enum { strength_elastic = 0, strength_neo_hookean = 1, strength_j2_power = 2, strength_johnson_cook = 3 };
 enum { eos_linear = 0, eos_mie_gruneisen = 1 };
-
-template <class V>
-struct Symmetric {
-  V xx, yy, zz, yz, xz, xy;
-};
-
-template <class V>
-OGIVE_INLINE V trace(const Symmetric<V>& a) {
-  return a.xx + a.yy + a.zz;
-}
-
-template <class V>
-OGIVE_INLINE V contract(const Symmetric<V>& a, const Symmetric<V>& b) {
-  return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.yz * b.yz + a.xz * b.xz + a.xy * b.xy);
-}
 
 // R a R^T with the Cayley rotation of the half rotation vector (x, y, z) of this step; c = 2 / (1 + x^2 + y^2 + z^2).
 template <class V>
@@ -64,21 +46,6 @@ OGIVE_INLINE Symmetric<V> rotated(const Symmetric<V>& a, V x, V y, V z, V c) {
 // pieces, and debris in free flight would pass any bound in time (as (1 + c t)^3; a lone affine particle, whose rate of
 // expansion c does not fall, exponentially).
 constexpr double widest_opening = 1000;
-
-// What a vector of particles brings in and takes away.
-template <class V>
-struct LawState {
-  V L[3][3];  // velocity gradient times the time step, L[i][j] = dv_i/dx_j dt
-  V dt;
-  Symmetric<V> stress;
-  V volume_ratio, energy;
-  V plastic_strain, yield_stress, temperature;
-  V F[3][3];
-  // Results for the sums, per initial volume.
-  V viscous_pressure, plastic_work, viscous_work, failure_loss, wave_speed_squared;
-  IntVecOf<V> newly_failed;
-  bool plastic_changed;
-};
 
 // Thermal softening 1 - T*^m of Eq. (39), T* = (T - T_room) / (T_melt - T_room) within 0..1.
 template <class V>
@@ -128,6 +95,23 @@ OGIVE_INLINE V plastic_increment(const KernelMaterial& m, const LawState<V>& s, 
   return select(plastic, x, broadcast<V>(0.0));
 }
 
+// Bulk viscosity, for the relative change of volume in the step from the ratio J_0 on.
+template <class V>
+OGIVE_INLINE void add_viscosity(const KernelMaterial& m, V volumetric, V J_0, LawState<V>& s) {
+  const V zero = broadcast<V>(0.0);
+  const V c = sqrt(s.wave_speed_squared);
+  const V rate = max(-volumetric / s.dt, zero);
+  const V speed = m.viscosity_quadratic * m.cell_size * rate + m.viscosity_linear * c;
+  s.viscous_pressure = m.density / s.volume_ratio * m.cell_size * rate * speed;
+  s.viscous_work = s.viscous_pressure * max(J_0 - s.volume_ratio, zero);
+  s.energy += s.viscous_work;
+  // The viscous time step: c is replaced by Q + sqrt(Q^2 + c^2), Q the viscous speed.
+  const V Q = select(rate > 0.0, speed, zero);
+  const V fast = Q + sqrt(Q * Q + s.wave_speed_squared);
+  s.reference_speed_squared *= fast * fast / s.wave_speed_squared;
+  s.wave_speed_squared = fast * fast;
+}
+
 template <int strength, int eos, class V>
 OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
   constexpr bool plastic_law = strength == strength_j2_power || strength == strength_johnson_cook;
@@ -140,42 +124,20 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
                           0.5 * (s.L[0][1] + s.L[1][0])};
   const V volumetric = trace(D);
   const V J0 = s.volume_ratio;
-  V J1;
-  s.plastic_work = s.failure_loss = s.viscous_work = s.viscous_pressure = zero;
+  s.plastic_work = s.failure_loss = s.viscous_work = s.viscous_pressure = s.reference_speed_squared = zero;
   s.newly_failed = zero > zero;
   s.plastic_changed = false;
 
-  if constexpr (strength == strength_neo_hookean) {
+  if constexpr (is_hyperelastic(strength)) {
     // F := (I + L + L L / 2) F, to second order so that a rotation does not stretch.
-    V A[3][3], F[3][3];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        A[i][j] = s.L[i][0] * s.F[0][j] + s.L[i][1] * s.F[1][j] + s.L[i][2] * s.F[2][j];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        F[i][j] = s.F[i][j] + A[i][j] + 0.5 * (s.L[i][0] * A[0][j] + s.L[i][1] * A[1][j] + s.L[i][2] * A[2][j]);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) s.F[i][j] = F[i][j];
-    J1 = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
-         F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
-    const V log_J = log(J1);
-    const Symmetric<V> b = {F[0][0] * F[0][0] + F[0][1] * F[0][1] + F[0][2] * F[0][2],
-                            F[1][0] * F[1][0] + F[1][1] * F[1][1] + F[1][2] * F[1][2],
-                            F[2][0] * F[2][0] + F[2][1] * F[2][1] + F[2][2] * F[2][2],
-                            F[1][0] * F[2][0] + F[1][1] * F[2][1] + F[1][2] * F[2][2],
-                            F[0][0] * F[2][0] + F[0][1] * F[2][1] + F[0][2] * F[2][2],
-                            F[0][0] * F[1][0] + F[0][1] * F[1][1] + F[0][2] * F[1][2]};
-    const V inverse_J = 1.0 / J1;
-    const V pressure_part = (m.lambda * log_J - m.G) * inverse_J, shear_part = m.G * inverse_J;
-    s.stress = {pressure_part + shear_part * b.xx, pressure_part + shear_part * b.yy, pressure_part + shear_part * b.zz,
-                shear_part * b.yz,                 shear_part * b.xz,                 shear_part * b.xy};
-    s.energy = 0.5 * m.lambda * log_J * log_J - m.G * log_J + 0.5 * m.G * (trace(b) - 3.0);
-    // Longitudinal wave along n: rho0 c^2 = lambda (1 - ln J) + G (1 + n b n); n b n by Gershgorin's bound.
-    const V stretch = max(max(b.xx + abs(b.xy) + abs(b.xz), b.yy + abs(b.xy) + abs(b.yz)), b.zz + abs(b.xz) + abs(b.yz));
-    s.wave_speed_squared = (m.lambda * max(1.0 - log_J, zero) + m.G * (1.0 + stretch)) * (1.0 / m.density);
-    s.volume_ratio = J1;
+    V F_0[3][3], A[3][3], B[3][3];
+    for (int i = 0; i < 9; ++i) F_0[i / 3][i % 3] = s.F[i / 3][i % 3];
+    multiply(s.L, F_0, A);
+    multiply(s.L, A, B);
+    for (int i = 0; i < 9; ++i) s.F[i / 3][i % 3] += A[i / 3][i % 3] + 0.5 * B[i / 3][i % 3];
+    update_from_gradient<strength>(m, F_0, s);
   } else {
-    J1 = J0 * (1.0 + volumetric);  // Eq. (30)
+    V J1 = J0 * (1.0 + volumetric);  // Eq. (30)
     IntVecOf<V> failed = zero > zero;
     if constexpr (plastic_law) {
       failed = s.plastic_strain >= m.failure_strain;
@@ -308,17 +270,33 @@ OGIVE_INLINE void update_law(const KernelMaterial& m, LawState<V>& s) {
     s.volume_ratio = J1;
   }
 
-  if (m.viscous) {
-    const V c = sqrt(s.wave_speed_squared);
-    const V rate = max(-volumetric / s.dt, zero);
-    const V speed = m.viscosity_quadratic * m.cell_size * rate + m.viscosity_linear * c;
-    s.viscous_pressure = m.density / J1 * m.cell_size * rate * speed;
-    s.viscous_work = s.viscous_pressure * max(J0 - J1, zero);
-    s.energy += s.viscous_work;
-    // The viscous time step: c is replaced by Q + sqrt(Q^2 + c^2), Q the viscous speed.
-    const V Q = select(rate > 0.0, speed, zero);
-    const V fast = Q + sqrt(Q * Q + s.wave_speed_squared);
-    s.wave_speed_squared = fast * fast;
+  if (m.viscous) add_viscosity(m, volumetric, J0, s);
+}
+
+// The same for a body that keeps its reference configuration: from F_0 to F_1. Laws of the rate get the velocity gradient of
+// the middle of the step, whose trace is then made to fit the exact change of volume.
+template <int strength, int eos, class V>
+OGIVE_INLINE void update_law_between(const KernelMaterial& m, const V (&F_0)[3][3], const V (&F_1)[3][3], LawState<V>& s) {
+  const V J0 = s.volume_ratio;
+  if constexpr (is_hyperelastic(strength)) {
+    s.plastic_work = s.failure_loss = s.viscous_work = s.viscous_pressure = broadcast<V>(0.0);
+    s.newly_failed = J0 > J0;
+    s.plastic_changed = false;
+    for (int i = 0; i < 9; ++i) s.F[i / 3][i % 3] = F_1[i / 3][i % 3];
+    update_from_gradient<strength>(m, F_0, s);
+    if (m.viscous) add_viscosity(m, s.volume_ratio / J0 - 1.0, J0, s);
+  } else {
+    V middle[3][3], change[3][3], inverse[3][3];
+    for (int i = 0; i < 9; ++i) {
+      middle[i / 3][i % 3] = 0.5 * (F_0[i / 3][i % 3] + F_1[i / 3][i % 3]);
+      change[i / 3][i % 3] = F_1[i / 3][i % 3] - F_0[i / 3][i % 3];
+    }
+    invert(middle, 1.0 / determinant(middle), inverse);
+    multiply(change, inverse, s.L);
+    const V miss = (determinant(F_1) / J0 - 1.0 - (s.L[0][0] + s.L[1][1] + s.L[2][2])) * (1.0 / 3.0);
+    for (int i = 0; i < 3; ++i) s.L[i][i] += miss;
+    update_law<strength, eos>(m, s);
+    s.reference_speed_squared = s.wave_speed_squared * largest_eigenvalue_bound(inverse_of(right_cauchy_green(F_1)));
   }
 }
 

@@ -220,7 +220,7 @@ void set_rigid_velocities(const Model& model, Workspace& workspace, bool trial) 
     const Slot& slot = workspace.slots[s];
     if (slot.rigid < 0 || slot.contact < 0) continue;
     const RigidMotion& motion = workspace.rigid[slot.rigid];
-    for (int n = 0; n < block_nodes; ++n) {
+    for (int n = 0; n < workspace.nodes_in_use; ++n) {
       NodeRecord& record = workspace.nodes[s * block_nodes + n];
       if (!(record.v[3] > 0)) continue;
       Vector3 x;

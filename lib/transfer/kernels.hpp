@@ -43,6 +43,9 @@ struct KernelGroup {
   NodeRecord* nodes[27];          // node records of the neighbour blocks, x fastest, null where none is touched
   ContactRecord* contact[27];     // likewise; null where no second field is
   double bound_low[4], bound_high[4];      // where particles may be until the next binning
+  // Two-dimensional models: area of a section by its volume, where axisymmetric at radius 1.
+  double section_share;
+  bool axisymmetric;
 };
 
 struct KernelParticles {
@@ -58,11 +61,14 @@ struct KernelParticles {
   double* viscous_pressure;  // null: the viscous pressure of a step acts in the same step or there is none
   double* displacement;      // records; null: stress first. Otherwise the stress comes last and moves the particles
   double* deformation[9];
+  double* history[15];       // what laws of finite strain remember
+  const double* reference;   // records {X, Y, Z, mass}; total Lagrangian bodies only
 };
 
 struct KernelMaterial {
   double density, K, G, lambda;
   double A, B, n;
+  double isotropic;  // part of the hardening; the rest is kinematic
   double rate_coefficient, inverse_reference_rate;
   double thermal_exponent, room_temperature, inverse_melt_range, heating;  // heating = taylor_quinney / (density cp)
   double rho_c0_squared, slope, gruneisen;
@@ -80,6 +86,8 @@ struct StressSums {
   std::int64_t failed_particles;
   std::int64_t bad_particle;    // first particle with a volume that is not positive and finite, -1: none
   bool outside;                 // as in MoveSums, where the stress update moves the particles
+  double worst_distortion;      // largest |F| |F^-1| / 3; total Lagrangian bodies only
+  double speed_squared;         // likewise, largest |v|^2
 };
 
 struct MoveSums {
@@ -96,6 +104,9 @@ struct OptionalKernels {
   void (*filter_velocity[shape_count])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27]);
   void (*update_particles_xpic[shape_count])(const KernelGroup&, const KernelParticles&, NodeRecord* const (&)[27],
                                              MoveSums&);
+  // Total Lagrangian bodies, by shape function (no GIMP), strength and equation of state: see transfer/total_lagrangian.hpp.
+  void (*update_lagrangian[2][6][2])(const KernelGroup&, const KernelParticles&, const KernelMaterial&,
+                                     NodeRecord* const (&)[27], StressSums&);
 };
 
 struct KernelTable {
@@ -105,13 +116,14 @@ struct KernelTable {
   // Sums for the normals, Eq. (9), and the fill of nodes.
   void (*map_contact[shape_count])(const KernelGroup&, const KernelParticles&);
   // Eqs. (29)-(31) by shape function, strength and equation of state.
-  void (*update_stress[shape_count][4][2])(const KernelGroup&, const KernelParticles&, const KernelMaterial&,
+  void (*update_stress[shape_count][6][2])(const KernelGroup&, const KernelParticles&, const KernelMaterial&,
                                            StressSums&);
   // Eq. (31) by itself, for the stress that an earlier step left.
   void (*map_internal_force[shape_count])(const KernelGroup&, const KernelParticles&);
   // Eqs. (33), (34) by shape function, without and with affine velocity.
   void (*update_particles[shape_count][2])(const KernelGroup&, const KernelParticles&, MoveSums&);
   const OptionalKernels* optional;
+  const KernelTable* planar;  // the same of two-dimensional models; null in that table itself
 };
 
 // The best table for this processor, or the one that the environment variable OGIVE_ISA names (x86-64-v2, x86-64-v3,

@@ -18,6 +18,7 @@
 // a node with so little mass receives must be accurate in proportion.
 #pragma once
 
+#include "shape/planar.hpp"
 #include "shape/weights.hpp"
 #include "simd/lanes.hpp"
 #include "transfer/kernels.hpp"
@@ -58,7 +59,7 @@ OGIVE_INLINE void fill(Weights& weights, const KernelGroup& group, Lanes x, Lane
   constexpr int N = Shape::nodes;
   const Lanes position[3] = {x, y, z};
   Lanes base[3];
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < (is_planar<Shape> ? 2 : 3); ++axis) {
     Lanes w[N], d[N];
     const Lanes xi = (position[axis] - group.corner[axis]) * group.inverse_cell;
     Shape::at(xi, base[axis], w, d);
@@ -73,6 +74,7 @@ OGIVE_INLINE void fill(Weights& weights, const KernelGroup& group, Lanes x, Lane
       if (beside == Beside::MomentsToGrid) store_aligned(weights.e[axis][side], moment * (1.0 / group.inverse_cell));
     }
   }
+  if constexpr (is_planar<Shape>) base[2] = broadcast<Lanes>(1.0);  // the block's own first layer
   // A whole number in the low bits of 2^52 + it.
   const Lanes first = (base[2] * tile_edge + base[1]) * tile_edge + base[0] + 0x1p52;
   const IntVec<lane_count> number = as_int(first) & std::int64_t{0xffff};
@@ -202,7 +204,7 @@ class Scatter {
   OGIVE_INLINE void end(Scatter& s) {
     if constexpr (gathers)
 #pragma GCC unroll 2
-      for (int k = 0; k < N; ++k)
+      for (int k = 0; k < layers_of<Shape>; ++k)
 #pragma GCC unroll 2
         for (int j = 0; j < N; ++j)
 #pragma GCC unroll 2
@@ -221,10 +223,13 @@ OGIVE_INLINE void scatter_value(const Weights& weights, int lane, Record q, Scat
   using A = AxisWeights<Shape>;
   const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
   Scatter<Shape>::move_to(to, weights.first[lane]);
-  Record q_z[N];
-  spread(a_z, q, q_z);
+  Record q_z[layers_of<Shape>];
+  if constexpr (is_planar<Shape>)
+    q_z[0] = q;
+  else
+    spread(a_z, q, q_z);
 #pragma GCC unroll 3
-  for (int k = 0; k < N; ++k) {
+  for (int k = 0; k < layers_of<Shape>; ++k) {
     Record q_zy[N];
     spread(a_y, q_z[k], q_zy);
 #pragma GCC unroll 3
@@ -246,15 +251,22 @@ OGIVE_INLINE void scatter_slopes(const Weights& weights, int lane, Record q, Rec
   using A = AxisWeights<Shape, beside>;
   const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
   Scatter<Shape>::move_to(to, weights.first[lane]);
-  Record q_z[N], X_z[N], Y_z[N];
-  if constexpr (slopes_only)
-    spread_slope(a_z, Z, q_z);
-  else
-    spread(a_z, q, Z, q_z);
-  spread(a_z, X, X_z);
-  spread(a_z, Y, Y_z);
+  constexpr int layers = layers_of<Shape>;
+  Record q_z[layers], X_z[layers], Y_z[layers];
+  if constexpr (is_planar<Shape>) {
+    q_z[0] = slopes_only ? Record{} : q;
+    X_z[0] = X;
+    Y_z[0] = Y;
+  } else {
+    if constexpr (slopes_only)
+      spread_slope(a_z, Z, q_z);
+    else
+      spread(a_z, q, Z, q_z);
+    spread(a_z, X, X_z);
+    spread(a_z, Y, Y_z);
+  }
 #pragma GCC unroll 3
-  for (int k = 0; k < N; ++k) {
+  for (int k = 0; k < layers; ++k) {
     Record q_zy[N], X_zy[N];
     spread(a_y, q_z[k], Y_z[k], q_zy);
     spread(a_y, X_z[k], X_zy);
@@ -275,9 +287,9 @@ OGIVE_INLINE R gather_value(const Weights& weights, int lane, const R* tile) {
   using A = AxisWeights<Shape>;
   const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
   const R* const first = tile + weights.first[lane];
-  R along_z[N];
+  R along_z[layers_of<Shape>];
 #pragma GCC unroll 3
-  for (int k = 0; k < N; ++k) {
+  for (int k = 0; k < layers_of<Shape>; ++k) {
     R along_y[N];
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
@@ -289,7 +301,10 @@ OGIVE_INLINE R gather_value(const Weights& weights, int lane, const R* tile) {
     }
     along_z[k] = collect(a_y, along_y);
   }
-  return collect(a_z, along_z);
+  if constexpr (is_planar<Shape>)
+    return along_z[0];
+  else
+    return collect(a_z, along_z);
 }
 
 // Sums of N and its derivatives per cell times the node's record; with moments in place of derivatives, the affine
@@ -300,9 +315,10 @@ OGIVE_INLINE void gather_slopes(const Weights& weights, int lane, const R* tile,
   using A = AxisWeights<Shape, beside>;
   const A a_x = A::of(weights, 0, lane), a_y = A::of(weights, 1, lane), a_z = A::of(weights, 2, lane);
   const R* const first = tile + weights.first[lane];
-  R value_z[N], dx_z[N], dy_z[N];
+  constexpr int layers = layers_of<Shape>;
+  R value_z[layers], dx_z[layers], dy_z[layers];
 #pragma GCC unroll 3
-  for (int k = 0; k < N; ++k) {
+  for (int k = 0; k < layers; ++k) {
     R value_y[N], dx_y[N];
 #pragma GCC unroll 3
     for (int j = 0; j < N; ++j) {
@@ -315,9 +331,25 @@ OGIVE_INLINE void gather_slopes(const Weights& weights, int lane, const R* tile,
     value_z[k] = collect(a_y, value_y, dy_z[k]);
     dx_z[k] = collect(a_y, dx_y);
   }
-  value = collect(a_z, value_z, dz);
-  dx = collect(a_z, dx_z);
-  dy = collect(a_z, dy_z);
+  if constexpr (is_planar<Shape>) {
+    value = value_z[0];
+    dx = dx_z[0];
+    dy = dy_z[0];
+    dz = R{};
+  } else {
+    value = collect(a_z, value_z, dz);
+    dx = collect(a_z, dx_z);
+    dy = collect(a_z, dy_z);
+  }
+}
+
+// Of two-dimensional models. Area of a particle's section by its volume; cells by its radius, 0 in plane strain.
+OGIVE_INLINE Lanes section_share(const KernelGroup& group, Lanes x) {
+  const Lanes share = broadcast<Lanes>(group.section_share);
+  return group.axisymmetric ? share / x : share;
+}
+OGIVE_INLINE Lanes cells_by_radius(const KernelGroup& group, Lanes x) {
+  return group.axisymmetric ? 1.0 / (x * group.inverse_cell) : Lanes{};
 }
 
 // Eqs. (27), (28): nodal mass and momentum.
@@ -357,7 +389,8 @@ void map_momentum(const KernelGroup& group, const KernelParticles& particles) {
 }
 
 // Eq. (9) before it is made a unit vector, and the volume that the field fills at the node. A particle fills its
-// current volume, but what has opened up by tension or failure does not count: volume_ratio above 1 is taken as 1.
+// current volume, but what has opened up by tension or failure does not count: volume_ratio above 1 is taken as 1. In a
+// two-dimensional model both are of the section: a ring's mass, which grows with its radius, would tilt the normals.
 template <class Shape>
 void map_contact(const KernelGroup& group, const KernelParticles& particles) {
   alignas(64) Record tile[tile_size];
@@ -376,10 +409,15 @@ void map_contact(const KernelGroup& group, const KernelParticles& particles) {
     fill<Shape, Beside::Derivatives>(weights, group, x, y, z);
     const Lanes ratio = load_aligned<Lanes>(particles.volume_ratio + p);
     alignas(32) double volume[lane_count];
+    alignas(32) double masses[lane_count];
+    if constexpr (is_planar<Shape>) {
+      mass *= section_share(group, x);
+      store_aligned(masses, mass);
+    }
     store_aligned(volume, mass * group.inverse_density * min(ratio, broadcast<Lanes>(1.0)));
 #pragma GCC unroll 1
     for (int lane = 0; lane < lane_count; ++lane) {
-      const double m = particles.position[4 * (p + lane) + 3] * group.inverse_cell;
+      const double m = (is_planar<Shape> ? masses[lane] : particles.position[4 * (p + lane) + 3]) * group.inverse_cell;
       scatter_slopes<Shape, Beside::Derivatives, false>(weights, lane, of_w * volume[lane], of_x * m, of_y * m,
                                                         of_z * m, sums);
     }
@@ -422,12 +460,16 @@ void update_particles(const KernelGroup& group, const KernelParticles& particles
           const Record dX = second_of(dx), dY = second_of(dy), dZ = second_of(dz);
           double* C = particles.affine + 9 * (p + lane);
           const Record X_0 = load_three(C), Y_0 = load_three(C + 3), Z_0 = load_three(C + 6);
-          lost_affine += ((X_0 - X) * (X_0 + X - dX * group.time_step) + (Y_0 - Y) * (Y_0 + Y - dY * group.time_step) +
-                          (Z_0 - Z) * (Z_0 + Z - dZ * group.time_step)) *
-                         position[3];
+          if constexpr (is_planar<Shape>)
+            lost_affine +=
+                ((X_0 - X) * (X_0 + X - dX * group.time_step) + (Y_0 - Y) * (Y_0 + Y - dY * group.time_step)) * position[3];
+          else
+            lost_affine += ((X_0 - X) * (X_0 + X - dX * group.time_step) + (Y_0 - Y) * (Y_0 + Y - dY * group.time_step) +
+                            (Z_0 - Z) * (Z_0 + Z - dZ * group.time_step)) *
+                           position[3];
           store_three(C, X);
           store_three(C + 3, Y);
-          store_three(C + 6, Z);
+          if constexpr (!is_planar<Shape>) store_three(C + 6, Z);
         } else {
           both = gather_value<Shape>(weights[i / lane_count], lane, tile);
         }

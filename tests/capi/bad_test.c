@@ -147,6 +147,9 @@ static void definitions(void) {
   WITH(grid, domain_max[1], -9, ogive_world_set_grid(world, &grid), "domain_max[y]");
   WITH(grid, domain_min[2], -INFINITY, ogive_world_set_grid(world, &grid), "domain_min[z]");
   WITH(grid, face[5], 3, ogive_world_set_grid(world, &grid), "face z max");
+  WITH(grid, space, 3, ogive_world_set_grid(world, &grid), "space");
+  WITH(grid, space, OGIVE_SPACE_AXISYMMETRIC, ogive_world_set_grid(world, &grid), "domain_min[x]");
+  WITH(grid, thickness, 0, ogive_world_set_grid(world, &grid), "thickness");
 
   ogive_numerics_def_init(&numerics, sizeof numerics);
   CHECK_REFUSED(world, ogive_world_set_numerics(world, NULL), "def");

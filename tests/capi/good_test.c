@@ -447,6 +447,43 @@ static void bodies_meet_by_their_surfaces(void) {
   ogive_world_destroy(world);
 }
 
+/* The same block in the plane: its section, and a ring of the same section. */
+static void worlds_may_have_two_dimensions(void) {
+  const double pi = 3.14159265358979324;
+  for (int32_t space = OGIVE_SPACE_PLANE_STRAIN; space <= OGIVE_SPACE_AXISYMMETRIC; ++space) {
+    ogive_world* world = NULL;
+    ogive_grid_def grid;
+    ogive_material_def copper = small_material();
+    ogive_material_id material;
+    ogive_body_def body;
+    ogive_solid_def box = small_box(3);
+    ogive_body_id id;
+    int64_t count = 0;
+    ogive_body_result result = {.struct_size = sizeof result};
+    ogive_grid_def_init(&grid, sizeof grid);
+    CHECK(grid.space == OGIVE_SPACE_THREE_DIMENSIONAL && grid.thickness == 1);
+    grid = small_grid();
+    grid.space = space;
+    grid.thickness = 7;
+    grid.domain_min[0] = 0;
+    CHECK(ogive_world_create(&world) == OGIVE_OK);
+    CHECK_OK(world, ogive_world_set_grid(world, &grid));
+    CHECK_OK(world, ogive_material_add(world, "copper", &copper, &material));
+    CHECK_OK(world, ogive_solid_particles(world, &box, &count, NULL, NULL));
+    CHECK(count == 16);
+    ogive_body_def_init(&body, sizeof body);
+    body.material = material;
+    set3(body.velocity, 0, 3, 0);
+    CHECK_OK(world, ogive_body_add_solid(world, "block", &body, &box, &id));
+    CHECK_OK(world, ogive_world_prepare(world));
+    CHECK_OK(world, ogive_world_advance(world, 1, 5, NULL, NULL));
+    CHECK_OK(world, ogive_body_result_get(world, id, &result));
+    CHECK(fabs(result.mass / (copper.density * 4 * (space == OGIVE_SPACE_AXISYMMETRIC ? 2 * pi * 3 : 7)) - 1) < 1e-14);
+    CHECK(result.upper[2] == 0 && fabs(result.velocity[1] - 3) < 1e-13);
+    ogive_world_destroy(world);
+  }
+}
+
 /* A rigid block that a host drives pushes a free one, which its own forces push back. */
 static void rigid_bodies_move_as_the_host_says(void) {
   small_world small = {NULL, {-1}, {-1}, {-1}, {-1}};
@@ -525,6 +562,7 @@ int main(int argc, char** argv) {
   a_deformation_gradient_is_kept_and_set();
   bodies_meet_by_their_surfaces();
   rigid_bodies_move_as_the_host_says();
+  worlds_may_have_two_dimensions();
   saves_and_files(&small, argv[1], argv[2]);
   CHECK(logged[OGIVE_LOG_ERROR] == 0);
   CHECK_REFUSED(small.world, ogive_world_step(small.world, -1), "dt");

@@ -8,6 +8,7 @@
 
 #include "expression.hpp"
 #include "failure.hpp"
+#include "mesh_section.hpp"
 #include "text.hpp"
 
 namespace {
@@ -203,7 +204,7 @@ TEST(Scene, messages_name_place_key_value_and_expectation) {
             "--set materials.zinc.density=-7850: materials.zinc.density: must be > 0, got -7850");
   EXPECT_EQ(refusal({{"grid.cell_sise", "1"}}),
             "--set grid.cell_sise=1: grid.cell_sise: unknown key; did you mean \"cell_size\"? "
-            "(known here: cell_size, lower, upper, faces)");
+            "(known here: cell_size, lower, upper, faces, space, thickness)");
   EXPECT_EQ(refusal({{"stop.time", "nan"}}), "--set stop.time=nan: stop.time: must be finite, got nan");
   EXPECT_EQ(refusal({{"stop.time", "V1*2"}}),
             "--set stop.time=V1*2: stop.time: must be a number or an expression, got \"V1*2\": the name \"V1\" is "
@@ -244,6 +245,71 @@ TEST(Scene, refuses_what_does_not_go_together) {
   EXPECT_NE(refusal({{"bodies", "{}"}}).find("must hold at least one body"), std::string::npos);
   EXPECT_NE(refusal({{"bodies.ball.velocity", "[1, 2]"}}).find("must be a list of 3 numbers, got 2"),
             std::string::npos);
+}
+
+TEST(Scene, has_two_dimensions_where_the_grid_says_so) {
+  EXPECT_EQ(scene_of({}).grid.space, OGIVE_SPACE_THREE_DIMENSIONAL);
+  const Scene plane = scene_of({{"grid.space", "plane_strain"}, {"grid.thickness", "2*half"},
+                                {"grid.upper.2", "0"}});
+  EXPECT_EQ(plane.grid.space, OGIVE_SPACE_PLANE_STRAIN);
+  EXPECT_EQ(plane.grid.thickness, 2 * plane.parameters.at("half"));
+  EXPECT_EQ(scene_of({{"grid.space", "axisymmetric"}}).grid.space, OGIVE_SPACE_AXISYMMETRIC);
+  EXPECT_NE(refusal({{"grid.thickness", "2"}}).find("grid.thickness: needs space = \"plane_strain\""), std::string::npos);
+  EXPECT_NE(refusal({{"grid.space", "axisymetric"}}).find("did you mean \"axisymmetric\""), std::string::npos);
+}
+
+namespace {
+
+// A prism from y = -1 to 1 over a ring of n points (x, z), closed by fans; corners counter-clockwise from outside.
+void prism(const std::vector<std::array<double, 2>>& ring, std::vector<double>& vertices, std::vector<int32_t>& corners) {
+  const int32_t n = static_cast<int32_t>(ring.size());
+  for (const double y : {-1.0, 1.0})
+    for (const auto& [x, z] : ring) vertices.insert(vertices.end(), {x, y, z});
+  for (int32_t i = 0; i < n; ++i) {
+    const int32_t next = (i + 1) % n;
+    corners.insert(corners.end(), {i, n + i, n + next, i, n + next, next});
+    if (i > 0 && next > 0) corners.insert(corners.end(), {0, i, next, n, n + next, n + i});
+  }
+}
+
+}  // namespace
+
+TEST(MeshSection, has_the_area_and_the_volume_of_revolution_of_the_surface) {
+  // A cylinder of 256 sides about y whose vertices lie in the plane too; then a bar beside the axis.
+  std::vector<std::array<double, 2>> ring;
+  for (int i = 0; i < 256; ++i) ring.push_back({3 * std::cos(i * M_PI / 128), 3 * std::sin(i * M_PI / 128)});
+  std::vector<double> vertices;
+  std::vector<int32_t> corners;
+  prism(ring, vertices, corners);
+  const auto sum = [](const driver::ParticleList& particles) {
+    double total = 0;
+    for (const double volume : particles.volumes) total += volume;
+    return total;
+  };
+  const driver::ParticleList plane = driver::fill_mesh_section(vertices, corners, {0, 0}, {0.25, 0.5}, {false, 7}, "mesh");
+  EXPECT_EQ(plane.volumes.size(), 24U * 4);
+  EXPECT_NEAR(sum(plane), 6 * 2 * 7, 1e-10);
+  const driver::ParticleList rings = driver::fill_mesh_section(vertices, corners, {0, 0}, {0.25, 0.5}, {true, 1}, "mesh");
+  EXPECT_EQ(rings.volumes.size(), 12U * 4);
+  EXPECT_NEAR(sum(rings), M_PI * 9 * 2, 1e-10);
+  for (size_t p = 0; p < rings.volumes.size(); ++p) {
+    EXPECT_NEAR(rings.volumes[p], 2 * M_PI * rings.positions[3 * p] * 0.25 * 0.5, 1e-12);
+    EXPECT_EQ(rings.positions[3 * p + 2], 0);
+  }
+  for (size_t v = 0; v < vertices.size(); v += 3) vertices[v] += 10;
+  EXPECT_NEAR(sum(driver::fill_mesh_section(vertices, corners, {0, 0}, {0.25, 0.5}, {true, 1}, "mesh")), 2 * M_PI * 10 * 12, 1e-9);
+  const auto refusal_of = [&](double spacing) -> std::string {
+    try {
+      driver::fill_mesh_section(vertices, corners, {0, 0}, {spacing, 0.5}, {true, 1}, "mesh");
+    } catch (const driver::Failure& failure) {
+      return failure.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal_of(1000).find("no particle centre"), std::string::npos);
+  EXPECT_NE(refusal_of(1e-12).find("spacing"), std::string::npos);
+  for (size_t v = 2; v < vertices.size(); v += 3) vertices[v] += 10;
+  EXPECT_NE(refusal_of(0.25).find("cut by the plane"), std::string::npos);
 }
 
 TEST(Setting, path_must_lead_somewhere) {
@@ -338,7 +404,7 @@ friction = 0
   EXPECT_EQ(scene.walls[1].rule.method, OGIVE_CONTACT_HUANG_FIRST);
   EXPECT_EQ(refusal({{"bodies.ball.formulation", "rigd"}}),
             "--set bodies.ball.formulation=rigd: bodies.ball.formulation: must be one of deformable, rigid, "
-            "rigid_prescribed, got \"rigd\"; did you mean \"rigid\"?");
+            "rigid_prescribed, total_lagrangian, got \"rigd\"; did you mean \"rigid\"?");
   EXPECT_NE(refusal({}, "[[bodies.extra.motion]]\ntime = 0\n[bodies.extra]\nmaterial = \"zinc\"\nsphere = { radius = 1 }\n"
                         "spacing = 0.5\n").find("bodies.extra.motion: needs formulation = \"rigid_prescribed\""),
             std::string::npos);

@@ -53,6 +53,11 @@ class Caller {
       def.domain_max[axis] = input_.one_in(16) ? input_.number() : 4;
     }
     for (std::int32_t& face : def.face) face = input_.one_in(4) ? input_.below(4) : OGIVE_FACE_FREE;
+    if (input_.one_in(3)) {
+      def.space = input_.below(input_.one_in(8) ? 5 : 3);
+      def.thickness = input_.about(1);
+      if (def.space == OGIVE_SPACE_AXISYMMETRIC && !input_.one_in(8)) def.domain_min[0] = 0;
+    }
     see(ogive_world_set_grid(world(), &def));
   }
 

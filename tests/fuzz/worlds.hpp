@@ -60,7 +60,7 @@ struct Store {
   ogive_reader reader() { return {sizeof(ogive_reader), 0, this, find, get}; }
 };
 
-constexpr int world_kinds = 4;
+constexpr int world_kinds = 5;
 
 /// A prepared world after a few steps.
 inline World small_world(int kind) {
@@ -74,6 +74,8 @@ inline World small_world(int kind) {
   grid.cell_size = 1;
   for (int axis = 0; axis < 3; ++axis) grid.domain_min[axis] = -4, grid.domain_max[axis] = 4;
   if (kind == 1) grid.face[0] = OGIVE_FACE_SYMMETRY, grid.face[5] = OGIVE_FACE_FIXED, grid.domain_min[0] = 0;
+  if (kind == 4) grid.space = OGIVE_SPACE_AXISYMMETRIC, grid.domain_min[0] = 0;
+  const int along = kind == 4 ? 1 : 2;
   if (kind == 1) numerics.transfer = OGIVE_TRANSFER_FLIP, numerics.shape_function = OGIVE_SHAPE_LINEAR;
   if (kind == 2) numerics.transfer = OGIVE_TRANSFER_XPIC, numerics.update_order = OGIVE_UPDATE_STRESS_LAST;
   if (kind == 3) numerics.transfer = OGIVE_TRANSFER_APIC;
@@ -99,11 +101,12 @@ inline World small_world(int kind) {
     ogive_body_def_init(&body, sizeof body);
     ogive_solid_def_init(&solid, sizeof solid);
     body.material = id;
-    body.velocity[2] = i == 0 ? 60 : -60;
+    body.velocity[along] = i == 0 ? 60 : -60;
     if (kind == 3 && i == 1) body.formulation = OGIVE_FORMULATION_RIGID_FREE;
     solid.solid = i == 0 ? OGIVE_SOLID_BOX : OGIVE_SOLID_SPHERE;
+    if (kind == 4) solid.axis[1] = 1, solid.axis[2] = 0;
     for (int axis = 0; axis < 3; ++axis) solid.spacing[axis] = 0.6, solid.size[axis] = i == 0 ? 2 : 1;
-    solid.centre[2] = i == 0 ? -1.2 : 1.2;
+    solid.centre[along] = i == 0 ? -1.2 : 1.2;
     ogive_body_id ignored;
     require(ogive_body_add_solid(world.get(), i == 0 ? "a" : "b", &body, &solid, &ignored) == OGIVE_OK,
             "the small world's body was refused");

@@ -22,7 +22,7 @@ struct TwoParticles {
     state.bodies.resize(1);
     BodyState& body = state.bodies[0];
     body.particles = 2;
-    allocate_particles(model.materials[0], false, group_padding, body);
+    allocate_particles(model.materials[0], Body{}, group_padding, body);
     Group group;
     group.count = 2;
     body.groups = {group};

@@ -38,7 +38,7 @@ struct World {
       model.bodies.back().material = 0;
       BodyState body;
       body.particles = static_cast<std::int64_t>(places.size());
-      allocate_particles(material, false, body.particles, body);
+      allocate_particles(material, Body{}, body.particles, body);
       for (std::size_t p = 0; p < places.size(); ++p) {
         for (int c = 0; c < 3; ++c) body.position[4 * p + c] = places[p][c];
         body.position[4 * p + 3] = 1 + static_cast<double>(p);

@@ -45,10 +45,10 @@ TEST(ContactInterface, RefusesWhatIsNoMethodRuleWallOrMotion) {
   const ogive_body_id guided = s.add("guided", Scene::rigid(s.metal, OGIVE_FORMULATION_RIGID_PRESCRIBED, {0, 0, 0}), {6, 0, 0});
   EXPECT_EQ(s.refusal(ogive_body_set_motion(s.scene.get(), guided, 3, times, nullptr, nullptr)),
             "body \"guided\": motion time: must be above the one before it, 1, got 1");
-  ogive_body_def def = Scene::rigid(s.metal, 3, {0, 0, 0});
+  ogive_body_def def = Scene::rigid(s.metal, 4, {0, 0, 0});
   ogive_solid_def solid = Scene::solid(OGIVE_SOLID_BOX, {3, 0, 0}, {2, 2, 2}, 0.5);
   EXPECT_EQ(s.refusal(ogive_body_add_solid(s.scene.get(), "odd", &def, &solid, nullptr)),
-            "body \"odd\": formulation: must be 0..2, got 3");
+            "body \"odd\": formulation: must be 0..3, got 4");
   ogive_clamp_def clamp;
   ogive_clamp_def_init(&clamp, sizeof clamp);
   clamp.body = guided;

@@ -93,7 +93,8 @@ class Scene {
   }
 
   // Faces: x min, x max, y min, y max, z min, z max.
-  Scene& grid(double cell, Vec3 lower, Vec3 upper, std::array<std::int32_t, 6> faces = {}) {
+  Scene& grid(double cell, Vec3 lower, Vec3 upper, std::array<std::int32_t, 6> faces = {},
+              std::int32_t space = OGIVE_SPACE_THREE_DIMENSIONAL, double thickness = 1) {
     ogive_grid_def def;
     ogive_grid_def_init(&def, sizeof def);
     def.cell_size = cell;
@@ -102,6 +103,8 @@ class Scene {
       def.domain_max[c] = upper[c];
     }
     for (int f = 0; f < 6; ++f) def.face[f] = faces[f];
+    def.space = space;
+    def.thickness = thickness;
     check(ogive_world_set_grid(get(), &def));
     return *this;
   }
@@ -263,6 +266,10 @@ class Scene {
       return values;
     }
     throw std::runtime_error(std::string("no field ") + name);
+  }
+
+  void set_field(ogive_body_id body, const char* name, const std::vector<double>& values) {
+    check(ogive_field_set(get(), body, name, values.data(), static_cast<std::int64_t>(values.size())));
   }
 
   // All fields of all bodies by "body/field".

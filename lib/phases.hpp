@@ -1,0 +1,40 @@
+// Parts of a step that the common grid and the reference grids of total Lagrangian bodies share.
+#pragma once
+
+#include <cstdint>
+
+#include "grid.hpp"
+#include "model.hpp"
+#include "parallel.hpp"
+#include "state.hpp"
+
+namespace ogive {
+
+// Runs work(link, index) over all groups, colour by colour: the groups of one colour write to disjoint nodes.
+template <class Work>
+void for_coloured_groups(Workspace& workspace, Work&& work) {
+  for (int colour = 0; colour < 4; ++colour) {
+    for_each_in_turn(workspace.threads, workspace.colour[colour], workspace.colour[colour + 1], [&](std::int64_t p) {
+      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) work(workspace.links[l], l);
+    });
+  }
+}
+
+// Runs work(node) over all nodes in use.
+template <class Work>
+void for_nodes(Workspace& workspace, Work&& work) {
+  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+    for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) work(i);
+  });
+}
+
+// Node records {velocity, mass | force} become {velocity, mass | trial velocity}, (11) or (26).
+void trial_velocities(const Model& model, Workspace& workspace, double dt);
+
+// Work at the mean of the velocities at the beginning and the end, as that of the loads (loads/loads.hpp).
+void book_gravity(const Model& model, State& state, const Workspace& workspace, double dt);
+
+// Adds up what the laws of this grid's bodies report; throws Error(Numerical) for a particle that has broken down.
+void book_stress(const Model& model, State& state, const Workspace& workspace, double dt);
+
+}  // namespace ogive
