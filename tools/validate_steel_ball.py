@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Perforation of the thin steel plate by the steel ball: every model, method and setting, beside Huang et al. 2010, Table II.
 
-  validate_steel_ball.py                       model M1: all runs that are not there yet, then the table
-  validate_steel_ball.py --models 1 2 3        all three models (hours)
+  validate_steel_ball.py                       M1 as a quarter, M1 to M3 axisymmetric: all runs that are not there yet, then the table
+  validate_steel_ball.py --models 1 2 3        quarters of all three models too (hours)
   validate_steel_ball.py --methods huang_second --settings recommended
   validate_steel_ball.py --until 0.002         a trial: the table is printed, no document is touched
 
@@ -10,6 +10,7 @@ Runs examples/scenes/steel_ball with --set alone, one thread each. A run that ha
 engine is not made again, so an interrupted sweep goes on where it was. Settings:
   paper        examples/settings/huang2010.toml
   recommended  the scene as it is
+  axisymmetric axisymmetric.toml, whose numerics are the same: all three models, seconds each
 Shapes are measured as tools/measure_steel_ball.py does. Writes the part "steel-ball" of docs/validation.md and
 docs/data/steel_ball.csv.
 """
@@ -28,7 +29,8 @@ TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), 
 SCENE = os.path.join("examples", "scenes", "steel_ball", "scene.toml")
 METHODS = {"single_field": "standard", "huang_first": "first", "huang_second": "second"}
 PAPER_FILE = os.path.join(TOP, "examples", "settings", "huang2010.toml")
-SETTINGS = {"paper": ["@" + PAPER_FILE], "recommended": []}
+SETTINGS = {"paper": ["@" + PAPER_FILE], "recommended": [], "axisymmetric": []}
+AXISYMMETRIC = os.path.join("examples", "scenes", "steel_ball", "axisymmetric.toml")
 
 
 class Row:
@@ -47,10 +49,12 @@ class Row:
             self.h, self.d, self.through = measured["h"], measured["D"], measured["through"]
             self.energy = 100 * summary["energy"]["residual_relative"]
             self.fastest = summary["maximum_speed_ever"] / parameters["V0"]
-            # x and y are interchangeable here, and so the momenta along them.
+            # x and y are interchangeable in a quarter, and so the momenta along them.
             momenta = [summary["bodies"]["plate"]["momentum"][axis] + summary["bodies"]["ball"]["momentum"][axis]
                        for axis in (0, 1)]
             self.asymmetry = abs(momenta[0] - momenta[1]) / abs(summary["bodies"]["ball"]["mass"] * parameters["V0"])
+            if settings == "axisymmetric":
+                self.asymmetry = None
             self.time, self.steps = 1000 * summary["time"], summary["steps"]
             self.wall, self.version = summary["wall_seconds"], summary["version"]
 
@@ -66,7 +70,7 @@ class Row:
             return begin + ["broke down", "–", paper[0], "–", "–", "–", paper[1]] + ["–"] * 4
         return begin + ["yes" if self.through else "no", f"{self.vr:.1f}", paper[0], f"{self.h:.2f}", f"{self.d:.2f}",
                         "–" if self.shape() is None else f"{self.shape():.2f}", paper[1], f"{self.energy:+.2f}",
-                        f"{self.fastest:.2f}", f"{self.asymmetry:.0e}", f"{self.wall:.0f}"]
+                        f"{self.fastest:.2f}", "–" if self.asymmetry is None else f"{self.asymmetry:.0e}", f"{self.wall:.1f}"]
 
 
 HEADING = ["model", "method", "through", "Vr m/s", "paper", "h mm", "D mm", "h/D", "paper", "energy residual %",
@@ -76,7 +80,7 @@ HEADING = ["model", "method", "through", "Vr m/s", "paper", "h mm", "D mm", "h/D
 def checks(rows):
     """What the project asks of these runs: (text, met or None where a run is missing)."""
     result = []
-    for settings in SETTINGS:
+    for settings in ("paper", "recommended"):
         chosen = {row.method: row for row in rows if (row.settings, row.model) == (settings, 1)}
         contact = [chosen.get(method) for method in ("huang_first", "huang_second")]
         result.append((f"M1, {settings} settings: perforates with both contact methods",
@@ -96,7 +100,8 @@ def validation_text(rows):
     good = [row for row in rows if not row.failure]
     scene_file = os.path.join(TOP, SCENE)
     titles = {name: f"{title} ({numerics_text(scene_file, [*SETTINGS[name], 'contact.method=huang_second'])})"
-              for name, title in (("paper", "Settings of the paper"), ("recommended", "Recommended settings"))}
+              for name, title in (("paper", "Settings of the paper"), ("recommended", "Recommended settings"),
+                                  ("axisymmetric", "Axisymmetric, recommended settings"))}
     parts = ["Made by `tools/validate_steel_ball.py` with Ogive " + ", ".join(sorted({row.version for row in good}))
              + " (one thread; the wall time is of a machine that did other work too), read at "
              + ", ".join(f"{time:.0f}" for time in sorted({round(row.time) for row in good}))
@@ -129,13 +134,13 @@ def write_csv(path, rows):
             shape = "" if row.shape() is None else f"{row.shape():.4g}"
             writer.writerow(begin + [int(row.through), f"{row.vr:.6g}", paper_speed, f"{row.h:.6g}", f"{row.d:.6g}", shape,
                                      paper_shape, EXPERIMENT, f"{row.energy / 100:.4g}", f"{row.fastest:.4g}",
-                                     f"{row.asymmetry:.2g}", f"{row.time:.6g}", row.steps, f"{row.wall:.1f}", row.version])
+                                     "" if row.asymmetry is None else f"{row.asymmetry:.2g}", f"{row.time:.6g}", row.steps, f"{row.wall:.1f}", row.version])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--models", type=int, nargs="+", choices=[1, 2, 3], default=[1], metavar="M",
-                        help="of 1, 2, 3 (default: 1)")
+                        help="of 1, 2, 3, as quarters (default: 1)")
     parser.add_argument("--methods", nargs="+", choices=list(METHODS), default=list(METHODS), metavar="METHOD",
                         help="of " + ", ".join(METHODS))
     parser.add_argument("--settings", nargs="+", choices=list(SETTINGS), default=list(SETTINGS), metavar="SETTINGS",
@@ -155,7 +160,9 @@ def main():
         scene = tomllib.load(file)
     until = arguments.until or scene["stop"]["time"]
     engine = engine_of(arguments.program)
+    axisymmetric_file = os.path.join(TOP, AXISYMMETRIC)
     identity = {"scene": digest(scene_file, PAPER_FILE), "engine": digest(engine)}
+    axisymmetric_identity = {"scene": digest(axisymmetric_file), "engine": digest(engine)}
 
     cases = {}
     for settings in SETTINGS:
@@ -164,12 +171,15 @@ def main():
                 options = [f"parameters.model={model}", f"contact.method={method}", *SETTINGS[settings],
                            f"output.particle_interval={until:g}", "output.checkpoint_steps=0"]
                 words = [word for option in options for word in ("--set", option)] + ["--until", f"{until:g}"]
-                cases[settings, model, method] = Case(os.path.join(output, settings, f"M{model}-{method}"), words, identity)
+                cases[settings, model, method] = Case(os.path.join(output, settings, f"M{model}-{method}"), words,
+                                                       axisymmetric_identity if settings == "axisymmetric" else identity)
 
     if not arguments.tables_only:
-        wanted = [case for (settings, model, method), case in cases.items() if settings in arguments.settings
-                  and model in arguments.models and method in arguments.methods]
-        run_cases(wanted, arguments.program, engine, scene_file, arguments.jobs)
+        for axisymmetric in (False, True):
+            wanted = [case for (settings, model, method), case in cases.items() if settings in arguments.settings
+                      and (settings == "axisymmetric") == axisymmetric and (axisymmetric or model in arguments.models)
+                      and method in arguments.methods]
+            run_cases(wanted, arguments.program, engine, axisymmetric_file if axisymmetric else scene_file, arguments.jobs)
 
     rows = []
     for (settings, model, method), case in cases.items():

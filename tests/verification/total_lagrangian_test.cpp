@@ -489,3 +489,31 @@ TEST(TotalLagrangian, WhatCannotBeIsRefusedWithFieldAndValue) {
                 .find("the body is total Lagrangian"),
             std::string::npos);
 }
+
+TEST(TotalLagrangian, WhatItCannotBeJoinedWithIsRefusedBeforeTheFirstStep) {
+  const auto refusal = [](auto&& change) {
+    Scene scene;
+    scene.grid(1, {0, 0, 0}, {12, 12, 12});
+    scene.add("rod", lagrangian(scene.material("steel", steel()), {}), box_between({2, 2, 2}, {5, 5, 5}, 0.5));
+    scene.add("plate", Scene::body(ogive_material_id{0}, {}), box_between({6, 2, 2}, {9, 5, 5}, 0.5));
+    change(scene);
+    EXPECT_EQ(ogive_world_prepare(scene.get()), OGIVE_ERROR_ARGUMENT);
+    return std::string(ogive_world_message(scene.get()));
+  };
+  const std::string rod = "body \"rod\": a total Lagrangian body needs ";
+  EXPECT_EQ(refusal([](Scene& scene) { scene.numerics(OGIVE_SHAPE_GIMP, 0.5); }),
+            rod + "shape_function \"linear\" or \"quadratic_bspline\", got \"gimp\"");
+  ogive_contact_def contact;
+  ogive_contact_def_init(&contact, sizeof contact);
+  contact.detection = OGIVE_DETECTION_SURFACE;
+  EXPECT_EQ(refusal([&](Scene& scene) { scene.check(ogive_world_set_contact(scene.get(), &contact)); }),
+            rod + "contact detection \"gap\" or \"shared_node\" with \"plate\", got \"surface\"");
+
+  Scene flat;
+  flat.grid(1, {0, 0, 0}, {12, 12, 0}, OGIVE_SPACE_PLANE_STRAIN);
+  flat.add("rod", lagrangian(flat.material("steel", steel()), {}),
+           Scene::solid(OGIVE_SOLID_BOX, {4, 4, 0}, {2, 2, 2}, 0.5));
+  EXPECT_EQ(ogive_world_prepare(flat.get()), OGIVE_ERROR_ARGUMENT);
+  EXPECT_EQ(std::string(ogive_world_message(flat.get())),
+            rod + "a three-dimensional model: space must be \"three_dimensional\"");
+}
