@@ -510,7 +510,7 @@ TEST(TotalLagrangian, WhatItCannotBeJoinedWithIsRefusedBeforeTheFirstStep) {
             rod + "contact detection \"gap\" or \"shared_node\" with \"plate\", got \"surface\"");
 
   Scene flat;
-  flat.grid(1, {0, 0, 0}, {12, 12, 0}, OGIVE_SPACE_PLANE_STRAIN);
+  flat.grid(1, {0, 0, 0}, {12, 12, 0}, {}, OGIVE_SPACE_PLANE_STRAIN);
   flat.add("rod", lagrangian(flat.material("steel", steel()), {}),
            Scene::solid(OGIVE_SOLID_BOX, {4, 4, 0}, {2, 2, 2}, 0.5));
   EXPECT_EQ(ogive_world_prepare(flat.get()), OGIVE_ERROR_ARGUMENT);
