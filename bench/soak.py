@@ -78,7 +78,7 @@ class Scene:
         young = self.log(1e2, 3e5)
         nu = r.uniform(-0.2, 0.49)
         bulk = young / (3 * (1 - 2 * nu))
-        kind = r.choice(["elastic", "neo_hookean", "j2_power", "johnson_cook"])
+        kind = r.choice(["elastic", "neo_hookean", "j2_power", "johnson_cook", "j2_mixed", "j2_multiplicative"])
         self.waves.append(math.sqrt((bulk + 2 * young / (3 * (1 + nu))) / density))
         self.say(f"[materials.{name}]")
         self.value("density", density * self.M / self.L ** 3)
@@ -89,6 +89,9 @@ class Scene:
         if kind in ("j2_power", "johnson_cook"):
             strength = young * self.log(1e-4, 1e-1)
             constants |= {"A": self.stress(strength), "B": self.stress(strength * r.uniform(0, 5)), "n": r.uniform(0.05, 1)}
+        if kind in ("j2_mixed", "j2_multiplicative"):
+            strength = young * self.log(1e-4, 1e-1)
+            constants |= {"yield_stress": self.stress(strength), "H": self.stress(strength * r.uniform(0, 5)), "c": r.uniform(0, 1)}
         if kind == "johnson_cook":
             if self.chance(0.6):
                 constants |= {"C": r.uniform(0, 0.1), "reference_strain_rate": self.log(1e-3, 1) / self.T}
@@ -98,7 +101,7 @@ class Scene:
         self.say(f"[materials.{name}.{kind}]")
         for key, x in constants.items():
             self.value(key, x)
-        if kind != "neo_hookean" and self.chance(0.3):
+        if kind not in ("neo_hookean", "j2_mixed", "j2_multiplicative") and self.chance(0.3):
             self.say(f"[materials.{name}.mie_gruneisen]")
             self.value("c0", self.speed(math.sqrt(bulk / density) * r.uniform(0.8, 1.2)))
             self.value("s", r.uniform(0, 2))
@@ -116,7 +119,7 @@ class Scene:
 
     def body(self, name, centre, materials):
         r = self.random
-        formulation = r.choices(["deformable", "rigid", "rigid_prescribed"], [0.75, 0.13, 0.12])[0]
+        formulation = r.choices(["deformable", "total_lagrangian", "rigid", "rigid_prescribed"], [0.57, 0.18, 0.13, 0.12])[0]
         shape = r.choice(["box", "cylinder", "sphere", "ogive_rod", "mesh", "particles"])
         size, spacing = r.uniform(0.7, 1.3), r.uniform(0.35, 0.6)
         speed = max(self.waves) * self.log(1e-4, 0.3)
@@ -125,6 +128,11 @@ class Scene:
         self.say(f"[bodies.{name}]")
         self.value("material", r.choice(materials))
         self.value("formulation", formulation)
+        if formulation == "total_lagrangian":
+            self.lagrangian = True
+            if self.chance(0.5):
+                self.value("distortion_limit", self.log(1.1, 30))
+                self.value("when_distorted", r.choice(["update", "stop"]))
         if formulation == "rigid_prescribed" and self.chance(0.5):
             motion = True
         else:
@@ -166,12 +174,12 @@ class Scene:
                 self.value("time", k * 0.3 * self.end)
                 self.value("velocity", [self.speed(speed * x) for x in self.direction()])
                 self.value("angular_velocity", [x * 0.1 * speed / self.T for x in self.direction()])
-        self.rigid.append(formulation != "deformable")
+        self.rigid.append(formulation.startswith("rigid"))
 
     def rule(self, wall=False):
         r = self.random
         self.value("method", r.choice(["huang_first", "huang_second", "york", "hu_chen", "bardenhagen_2000",
-                                       "bardenhagen_2001", "pan_2008"] + ([] if wall else ["single_field"])))
+                                       "bardenhagen_2001", "pan_2008", "persistent"] + ([] if wall else ["single_field"])))
         if not wall and self.chance(0.6):
             self.value("normal", r.choice(["average", "master", "volume_gradient", "occupied_cell", "logistic_regression"]))
         if self.chance(0.5):
@@ -185,6 +193,7 @@ class Scene:
         r = self.random
         self.particles = {}
         self.waves = []
+        self.lagrangian = False
         materials = [f"m{i}" for i in range(r.randint(1, 3))]
         head, self.lines = self.lines, []
         for name in materials:
@@ -217,7 +226,7 @@ class Scene:
             self.value(f"{axis}_min", "symmetry" if symmetric else r.choice(["free", "free", "fixed"]))
             self.value(f"{axis}_max", r.choice(["free", "free", "fixed", "symmetry"]))
         self.say("[numerics]")
-        self.value("shape_function", r.choice(["linear", "quadratic_bspline"]))
+        self.value("shape_function", r.choice(["linear", "quadratic_bspline"] + ([] if self.lagrangian else ["gimp"])))
         self.value("time_step_factor", r.uniform(0.05, 0.55) if self.chance(0.85) else r.uniform(0.5, 1.5))
         transfer = r.choice(["affine_flip", "flip", "apic", "xpic"])
         self.value("transfer", transfer)

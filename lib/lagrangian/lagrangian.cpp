@@ -8,6 +8,7 @@
 
 #include "audit.hpp"
 #include "boundary/boundary.hpp"
+#include "breakdown.hpp"
 #include "error.hpp"
 #include "lagrangian/reference_grid.hpp"
 #include "loads/loads.hpp"
@@ -41,6 +42,28 @@ void for_state_nodes(State& state, Workspace& reference, Work&& work) {
       work(s, reference.nodes[s * block_nodes + n], &of.node_position[at], &of.node_velocity[at], &of.node_force[at]);
     }
   }
+}
+
+// The particle of a group with the largest |F| |F^-1|.
+std::int64_t most_distorted(const BodyState& body, std::int32_t group) {
+  const Group& of = body.groups[group];
+  std::int64_t worst = of.begin;
+  double largest = 0;
+  for (std::int64_t p = of.begin; p < of.begin + of.count; ++p) {
+    double F[3][3], size = 0, cofactors = 0;
+    for (int i = 0; i < 9; ++i) size += (F[i / 3][i % 3] = body.deformation[i][p]) * body.deformation[i][p];
+    double determinant = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+        const double cofactor = F[a][c] * F[b][d] - F[a][d] * F[b][c];
+        cofactors += cofactor * cofactor;
+        if (i == 0) determinant += F[0][j] * cofactor;
+      }
+    const double distortion = size * cofactors / (determinant * determinant);
+    if (distortion > largest) largest = distortion, worst = p;
+  }
+  return worst;
 }
 
 double mirror(const NodeWeight& at, int c) { return at.mirrored >> c & 1 ? -at.weight : at.weight; }
@@ -122,6 +145,10 @@ void prescribe_points(State& state, Workspace& reference, double dt) {
     for (std::size_t c = 0; c < count; ++c) {
       if (!acts(c)) continue;
       const double work = lambda[c] * 0.5 * (start[c] + wanted(c));
+      // Near a mirror the point's image pushes back, and the plane itself takes what would cross it: the mirror's impulse.
+      double received = 0;
+      for_weights(c, [&](const NodeWeight& at) { received += free(at.node) ? mirror(at, axis) : 0.0; });
+      state.ledger.boundary_impulse[axis] += lambda[c] * (received - 1);
       if (reference.prescribed_points[c].load < 0) {
         state.ledger.boundary_impulse[axis] += lambda[c];
         state.ledger.boundary_work += work;
@@ -368,7 +395,6 @@ void kick_lagrangian(const Model& model, State& state, Workspace& workspace, dou
   }
   fold_force(state, reference, kick);
   trial_velocities(model, reference, kick);
-  book_gravity(model, state, reference, kick);
 }
 
 void set_lagrangian_trial(Workspace& workspace) {
@@ -400,10 +426,11 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
   add(state.ledger.boundary_impulse, contact.mirror_impulse);
   hold_faces(state, reference);
   prescribe_points(state, reference, dt);
+  const double kick = kick_time(state, dt);
+  book_gravity(model, state, reference, kick);
   unfold_motion(state, reference);
 
   // {velocity at the end, - | mean acceleration}, for the work of loads.
-  const double kick = kick_time(state, dt);
   if (loaded(model, state)) {
     for_nodes(reference, [&](std::int64_t at) {
       NodeRecord& node = reference.nodes[at];
@@ -466,9 +493,10 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
     if (rules.when_distorted == WhenDistorted::Stop) {
       char text[64];
       std::snprintf(text, sizeof text, "%.6g, got %.6g", rules.distortion_limit, sums.worst_distortion);
-      throw Error(ErrorKind::Numerical, "body \"" + rules.name + "\": distortion |F| |F^-1| / 3 must be at most " +
-                                            text + " at time " + std::to_string(state.time + dt) +
-                                            ", and when_distorted forbids to go on updated Lagrangian");
+      throw breakdown(model, state, link.body, most_distorted(state.bodies[link.body], link.group),
+                      std::string("distortion |F| |F^-1| / 3 must be at most ") + text,
+                      "the body is deformed more than distortion_limit allows, and when_distorted forbids to go on updated "
+                      "Lagrangian");
     }
     of.distorted = true;
     // The next step is an updated Lagrangian one, with the limit (35).

@@ -90,9 +90,11 @@ class Caller {
   ogive_material_def material() {
     ogive_material_def def;
     ogive_material_def_init(&def, sizeof def);
-    def.strength = input_.below(4);
-    def.eos = def.strength == OGIVE_STRENGTH_NEO_HOOKEAN ? OGIVE_EOS_LINEAR : input_.below(2);
-    def.failure = input_.below(2);
+    def.strength = input_.below(6);
+    const bool mixed = def.strength == OGIVE_STRENGTH_J2_MIXED || def.strength == OGIVE_STRENGTH_J2_MULTIPLICATIVE;
+    def.eos = mixed || def.strength == OGIVE_STRENGTH_NEO_HOOKEAN ? OGIVE_EOS_LINEAR : input_.below(2);
+    def.failure = mixed ? OGIVE_FAILURE_NONE : input_.below(2);
+    if (mixed) def.isotropic_fraction = input_.about(0.5);
     def.density = input_.about(8e-3);
     if (input_.one_in(2)) {
       def.bulk_modulus = input_.about(1e5), def.shear_modulus = input_.about(4e4);
@@ -100,7 +102,7 @@ class Caller {
       def.youngs_modulus = input_.about(1e5), def.poisson_ratio = input_.about(0.1);
     }
     def.yield_stress = input_.about(100), def.hardening_modulus = input_.about(100);
-    def.hardening_exponent = input_.about(0.3);
+    def.hardening_exponent = mixed ? 1 : input_.about(0.3);
     if (input_.one_in(2)) def.rate_coefficient = input_.about(0.01), def.reference_strain_rate = input_.about(1e-3);
     if (input_.one_in(2))
       def.thermal_exponent = input_.about(1), def.melt_temperature = input_.about(1000), def.specific_heat = input_.about(400);
