@@ -19,7 +19,6 @@ goes to "<scene>-full" with the date and the machine, and stays as it is when th
 
 import argparse
 import csv
-import datetime
 import os
 
 import numpy as np
@@ -28,7 +27,7 @@ from measure_steel_ball import largest_connected
 from plot_common import Refused, plt, run_main
 from plot_history import History
 from plot_section import open_particles, particle_files
-from validation_table import Case, digest, engine_of, markdown_table, read_rows, replace_block, run_cases
+from validation_table import Case, digest, engine_of, last_run, markdown_table, read_rows, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 DATA = os.path.join(TOP, "tests", "data")
@@ -501,12 +500,6 @@ def write_plot(path, scene, rows):
     plt.close(figure)
 
 
-def machine():
-    with open("/proc/cpuinfo", encoding="utf-8") as file:
-        models = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
-    return f"{models[0] if models else 'unknown processor'}, {os.cpu_count()} processors"
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", nargs="+", choices=list(SCENES), default=list(SCENES), metavar="SCENE",
@@ -543,7 +536,7 @@ def main():
             missed += [f"{name}: {check.text}" for check in checks if check.gate and not check.state()]
             text = table_text(scene, part, checks)
             if suffix:
-                text = f"Last run on {datetime.date.today()}, {machine()}.\n\n{text}"
+                text = f"{last_run(row.directory for row in part)}\n\n{text}"
             print(f"\n{name}{suffix}\n\n{text}")
             if not trial:
                 write_csv(os.path.join(TOP, "docs", "data", "contact", f"{name}{suffix}.csv"), scene, part)

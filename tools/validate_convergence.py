@@ -16,7 +16,7 @@ import csv
 import os
 
 from plot_common import Refused, run_main
-from validation_table import Case, digest, engine_of, markdown_table, replace_block, run_cases
+from validation_table import Case, digest, engine_of, last_run, markdown_table, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 SCENE = os.path.join(TOP, "examples", "scenes", "thick_plate", "scene.toml")
@@ -79,6 +79,8 @@ def contact_tables(arguments, engine, identity):
     columns = ["speed at 170 us", "Vr", "energy %", "fastest / V0"]
     text = markdown_table(["V0", "rod", "cell mm"] + [f"gap: {name}" for name in columns] +
                           [f"surface: {name}" for name in columns], lines)
+    done = [case.directory for pair in cases.values() for case in pair.values() if (case.outcome() or {}).get("summary")]
+    text = last_run(done) + "\n\n" + text
     print(text)
     replace_block(os.path.join(TOP, "docs", "validation.md"), "surface-contact", text)
     with open(os.path.join(TOP, "docs", "data", "surface_contact.csv"), "w", encoding="utf-8", newline="") as file:
@@ -132,6 +134,7 @@ def main():
         raise Refused(f"{output}: no runs of this engine and scene")
     text = markdown_table(["cell mm", "particles", "Vr m/s", "energy residual %", "transfer %", "fastest particle / V0",
                            "time us", "steps", "wall s"], lines)
+    text = last_run(case.directory for case in cases.values() if case.outcome()) + "\n\n" + text
     print(text)
     replace_block(os.path.join(TOP, "docs", "validation.md"), "convergence", text)
     with open(os.path.join(TOP, "docs", "data", "convergence.csv"), "w", encoding="utf-8", newline="") as file:

@@ -23,7 +23,7 @@ import tomllib
 
 from measure_steel_ball import EXPERIMENT, measure_run, read_table_ii
 from plot_common import Refused, run_main
-from validation_table import Case, digest, engine_of, markdown_table, numerics_text, replace_block, run_cases
+from validation_table import Case, digest, engine_of, last_run, markdown_table, numerics_text, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 SCENE = os.path.join("examples", "scenes", "steel_ball", "scene.toml")
@@ -37,7 +37,7 @@ class Row:
     """One run's numbers."""
 
     def __init__(self, model, method, settings, directory, outcome):
-        self.model, self.method, self.settings = model, method, settings
+        self.model, self.method, self.settings, self.directory = model, method, settings, directory
         row = read_table_ii()[f"M{model}"]
         self.cell, self.spacing = row["cell_size"], row["spacing"]
         self.paper_speed, self.paper_shape = row.get(method + "_velocity"), row.get(method + "_h_over_d")
@@ -106,7 +106,7 @@ def validation_text(rows):
              + " (one thread; the wall time is of a machine that did other work too), read at "
              + ", ".join(f"{time:.0f}" for time in sorted({round(row.time) for row in good}))
              + f" us. Experiment: h/D {EXPERIMENT}. *Asymmetry*: difference of the momenta along x and y, which should be "
-             "equal, of the ball's initial momentum."]
+             "equal, of the ball's initial momentum. " + last_run(row.directory for row in good)]
     for settings, title in titles.items():
         chosen = [row for row in rows if row.settings == settings]
         if chosen:

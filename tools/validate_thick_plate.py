@@ -24,7 +24,8 @@ import sys
 import tomllib
 
 from plot_common import Refused, run_main
-from validation_table import Case, digest, engine_of, markdown_table, numerics_text, read_references, replace_block, run_cases
+from validation_table import (Case, digest, engine_of, last_run, markdown_table, numerics_text, read_references, replace_block,
+                              run_cases)
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 SCENE = os.path.join("examples", "scenes", "thick_plate", "scene.toml")
@@ -48,8 +49,8 @@ def settings_of(settings, method):
 class Row:
     """One run's numbers."""
 
-    def __init__(self, v0, method, settings, reference, outcome):
-        self.v0, self.method, self.settings, self.reference = v0, method, settings, reference
+    def __init__(self, v0, method, settings, reference, directory, outcome):
+        self.v0, self.method, self.settings, self.reference, self.directory = v0, method, settings, reference, directory
         self.paper, self.experiment = reference[method], reference["experiment"]
         self.failure = outcome.get("failure")
         summary = outcome.get("summary")
@@ -140,7 +141,7 @@ def validation_text(rows, scene, read_at, whole):
         "`examples/scenes/thick_plate`, friction 0. " + rule + f" The standard method creeps and is read at "
         f"{1000 * read_at:g} us. *Energy residual*: what no term of the energy ledger accounts for, of the initial total "
         "energy; *transfer*: what affine velocities took (booked, no part of the residual). *V lost*: sqrt(V0² − Vr²), the speed whose energy the target took; near the ballistic limit (340 m/s) it "
-        "is the meaningful comparison, because Vr there magnifies any small difference.")
+        "is the meaningful comparison, because Vr there magnifies any small difference. " + last_run(row.directory for row in rows))
     for settings in SETTINGS:
         for method, name in METHODS.items():
             chosen = [row for row in rows if (row.settings, row.method) == (settings, method)]
@@ -242,7 +243,7 @@ def main():
         run_cases(wanted, arguments.program, engine, scene_file, arguments.jobs)
 
     outcomes = {key: case.outcome() for key, case in cases.items()}
-    rows = [Row(v0, method, settings, references[v0], outcome)
+    rows = [Row(v0, method, settings, references[v0], cases[settings, method, v0].directory, outcome)
             for (settings, method, v0), outcome in outcomes.items() if outcome]
     if not rows:
         raise Refused(f"{output}: no runs of this engine and scene")

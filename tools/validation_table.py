@@ -1,6 +1,7 @@
 """What the validation tools share: reference tables, many runs side by side, blocks in documents."""
 
 import csv
+import datetime
 import hashlib
 import json
 import os
@@ -70,6 +71,19 @@ def digest(*paths):
         with open(path, "rb") as file:
             total.update(file.read())
     return total.hexdigest()[:16]
+
+
+def machine():
+    """The processor's name and how many there are."""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        models = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    return f"{models[0] if models else 'unknown processor'}, {os.cpu_count()} processors"
+
+
+def last_run(directories):
+    """When the newest of these runs ended, and the machine that this is."""
+    ended = max(os.path.getmtime(os.path.join(directory, "case.json")) for directory in directories)
+    return f"Last run on {datetime.date.fromtimestamp(ended)}, {machine()}."
 
 
 def engine_of(program):
