@@ -130,8 +130,12 @@ KernelParticles particles_of(State& state, Workspace& workspace, const GroupLink
 
 void clear_grid(Workspace& workspace) {
   for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
-    std::memset(static_cast<void*>(&workspace.nodes[s * block_nodes]), 0,
-                static_cast<std::size_t>(workspace.nodes_in_use) * sizeof(NodeRecord));
+    // Sizes that the compiler knows take no call.
+    void* const first = &workspace.nodes[s * block_nodes];
+    if (workspace.nodes_in_use == block_nodes)
+      std::memset(first, 0, block_nodes * sizeof(NodeRecord));
+    else
+      std::memset(first, 0, layer_nodes * sizeof(NodeRecord));
   });
 }
 
