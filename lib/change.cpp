@@ -11,8 +11,8 @@ namespace {
 
 bool same_yielding(const Material& a, const Material& b) {
   return a.yield_stress == b.yield_stress && a.hardening_modulus == b.hardening_modulus &&
-         a.hardening_exponent == b.hardening_exponent && a.isotropic_fraction == b.isotropic_fraction && a.thermal_exponent == b.thermal_exponent &&
-         a.melt_temperature == b.melt_temperature && a.room_temperature == b.room_temperature;
+         a.hardening_exponent == b.hardening_exponent && a.isotropic_fraction == b.isotropic_fraction &&
+         a.thermal_exponent == b.thermal_exponent && a.melt_temperature == b.melt_temperature && a.room_temperature == b.room_temperature;
 }
 
 [[noreturn]] void refuse(const std::string& field, const std::string& why) {

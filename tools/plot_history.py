@@ -52,6 +52,19 @@ class History:
         return max(self.bodies(), key=lambda body: self[body + ".speed"][0])
 
 
+def vectors(history, name):
+    """The three columns of a vector, side by side."""
+    return np.stack([history[f"{name}_{axis}"] for axis in "xyz"], axis=1)
+
+
+def momentum_error(history):
+    """What neither faces, gravity nor guides gave, of the bodies' largest momentum or the largest impulse of a run."""
+    given = vectors(history, "boundary_impulse") + vectors(history, "external_impulse")
+    momentum = vectors(history, "momentum") + vectors(history, "left_domain_momentum")
+    largest = sum(np.linalg.norm(vectors(history, f"{body}.momentum"), axis=1) for body in history.bodies()).max()
+    return np.abs(momentum - momentum[0] - given).max() / max(largest, np.abs(given).max())
+
+
 def run_label(history):
     return os.path.basename(os.path.abspath(history.directory))
 

@@ -25,9 +25,9 @@ import numpy as np
 
 from measure_steel_ball import largest_connected
 from plot_common import Refused, plt, run_main
-from plot_history import History
+from plot_history import History, momentum_error
 from plot_section import open_particles, particle_files
-from validation_table import Case, digest, engine_of, last_run, markdown_table, read_rows, replace_block, run_cases
+from validation_table import FLIP_ALONE, Case, digest, engine_of, last_run, markdown_table, read_rows, replace_block, run_cases
 
 TOP = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 DATA = os.path.join(TOP, "tests", "data")
@@ -55,15 +55,11 @@ class Run:
         return "-".join(str(value) for value in self.labels.values())
 
 
-# With affine velocities their first phase, which the particles do not feel, makes energy (docs/decisions.md).
-FLIP_ALONE = ["york", "hu_chen", "pan_2008"]
-
-
 def grid_runs(settings, methods=METHODS, full=False, labels=None, options=()):
     """A run for each of the methods with these settings."""
-    flip = {method: ["numerics.transfer=flip"] if method in FLIP_ALONE else [] for method in methods}
     return [Run({"settings": settings, **(labels or {}), "method": method},
-                [*SETTINGS[settings], *flip[method], f"contact.method={method}", *options], full) for method in methods]
+                [*SETTINGS[settings], *FLIP_ALONE.get(method, []), f"contact.method={method}", *options], full)
+            for method in methods]
 
 
 class Column:
@@ -90,21 +86,14 @@ COMMON = [Column("energy", "energy change %", "+.2f", 100), Column("friction", "
           Column("wall_seconds", "wall s", ".1f")]
 
 
-def vectors(history, name):
-    return np.stack([history[f"{name}_{axis}"] for axis in "xyz"], axis=1)
-
-
 def common_measures(history, summary):
     mechanical = history["kinetic"] + history["internal"]
     scale = max(mechanical.max(), abs(summary["energy"]["initial_total"]))
     residual = history["residual"]
-    given = vectors(history, "boundary_impulse") + vectors(history, "external_impulse")
-    momentum = vectors(history, "momentum") + vectors(history, "left_domain_momentum")
-    largest = sum(np.linalg.norm(vectors(history, f"{body}.momentum"), axis=1) for body in history.bodies()).max()
     return {"energy": residual[np.abs(residual).argmax()] / scale,
             "friction": history["friction_dissipation"][-1] / scale,
             "transfer": history["transfer_dissipation"][-1] / scale,
-            "momentum_error": np.abs(momentum - momentum[0] - given).max() / max(largest, np.abs(given).max()),
+            "momentum_error": momentum_error(history),
             "steps": summary["steps"], "wall_seconds": summary["wall_seconds"], "version": summary["version"]}
 
 

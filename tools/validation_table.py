@@ -13,6 +13,11 @@ import tomllib
 from plot_common import Refused
 
 
+# Methods that are run with FLIP: with affine velocities their first phase, which the particles do not feel, makes energy
+# (docs/decisions.md).
+FLIP_ALONE = {method: ["numerics.transfer=flip"] for method in ("york", "hu_chen", "pan_2008")}
+
+
 def read_rows(path):
     """A CSV with '#' lines of sources: its rows, each {column: text}."""
     with open(path, encoding="utf-8") as file:

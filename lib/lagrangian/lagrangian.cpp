@@ -32,16 +32,14 @@ double kick_time(const State& state, double dt) { return 0.5 * (state.last_time_
 // Calls work(node record, position, velocity and force in the state) for all nodes, one thread a slot.
 template <class Work>
 void for_state_nodes(State& state, Workspace& reference, Work&& work) {
-  const std::int64_t slots = static_cast<std::int64_t>(reference.slots.size());
-#pragma omp parallel for num_threads(reference.threads) schedule(static)
-  for (std::int64_t s = 0; s < slots; ++s) {
+  for_each_in_parts(reference.threads, 0, static_cast<std::int64_t>(reference.slots.size()), [&](std::int64_t s) {
     const Slot& slot = reference.slots[s];
     ReferenceState& of = state.bodies[slot.field].reference;
     for (std::size_t n = 0; n < block_nodes; ++n) {
       const std::size_t at = first_of_slot(slot) + 4 * n;
       work(s, reference.nodes[s * block_nodes + n], &of.node_position[at], &of.node_velocity[at], &of.node_force[at]);
     }
-  }
+  });
 }
 
 // The particle of a group with the largest |F| |F^-1|.

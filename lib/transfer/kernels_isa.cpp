@@ -5,8 +5,6 @@
 namespace ogive {
 namespace OGIVE_ISA_NAMESPACE {
 
-#define OGIVE_TEXT_OF(name) #name
-#define OGIVE_TEXT(name) OGIVE_TEXT_OF(name)
 #define OGIVE_KERNEL(Shape, strength, eos) update_stress<Shape, strength, eos>
 
 extern const OptionalKernels optional_kernels;  // optional_kernels_isa.cpp

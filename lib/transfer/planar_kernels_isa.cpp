@@ -12,8 +12,6 @@ using PlanarLinear = Planar<LinearShape>;
 using PlanarBSpline = Planar<QuadraticBSplineShape>;
 using PlanarGimp = Planar<GimpShape>;
 
-#define OGIVE_TEXT_OF(name) #name
-#define OGIVE_TEXT(name) OGIVE_TEXT_OF(name)
 #define OGIVE_KERNEL(Shape, strength, eos) update_stress<Shape, strength, eos>
 
 static const OptionalKernels planar_optional_kernels = {
