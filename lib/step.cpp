@@ -87,6 +87,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   map_contact_stress(model, state, workspace);
   if (contact) end_contact(model, state, workspace, dt);         // (12)-(22), (14)
   apply_clamps(state, workspace);
+  hold_lagrangian(model, state, workspace, dt);                  // their impulses, faces, (3.19) of Lee et al.
   apply_driven_velocities(model, state, workspace, dt);
   book_gravity(model, state, workspace, dt);
   unfold_motion(state, workspace);

@@ -643,6 +643,26 @@ void book_energies(State& state, const Workspace& workspace) {
 
 }  // namespace
 
+void book_held_contact(State& state, Workspace& workspace) {
+  LagrangianContact& contact = workspace.lagrangian_contact;
+  if (contact.empty()) return;
+  for (std::size_t i = 0; i < workspace.mixed.size(); ++i)
+    for (ContactField& field : workspace.block_contacts[i].fields) field.change = {};
+  for (const LagrangianContact::Field& field : contact.fields)
+    workspace.block_contacts[field.block].fields[field.field].change = field.change;
+  for (std::size_t i = 0; i < workspace.mixed.size(); ++i) {
+    const BlockContacts& contacts = workspace.block_contacts[i];
+    for (const ContactNode& node : contacts.nodes)
+      for (int p = node.first_pair; p < node.first_pair + node.pairs; ++p) {
+        const ContactPair& pair = contacts.pairs[p];
+        if (!pair.booked || pair.constraint.hold == Hold::Nothing) continue;
+        const ContactField* fields = contacts.fields.data() + node.first_field;
+        state.ledger.contact_dissipation -=
+            0.5 * dot(impulse_on_a(pair), minus(fields[pair.a].change, fields[pair.b].change));
+      }
+  }
+}
+
 double surface_distance(ShapeFunction shape, double fraction) {
   // The filled part as a function of distance is the integral of the shape function beyond it, symmetric about 1/2.
   if (fraction > 0.5) return -surface_distance(shape, std::max(0.0, 1.0 - fraction));

@@ -30,6 +30,10 @@ PairTotals& pair_totals(State& state, std::int32_t a, std::int32_t b);
 // own velocities, which are the mapped ones, not those that the first phase left.
 void book_kept_start(State& state, const Workspace& workspace);
 
+// What prescribed points then changed of the velocities of total Lagrangian bodies (LagrangianContact::end_change) changes the
+// work of the second phase's impulses, which is booked exactly there.
+void book_held_contact(State& state, Workspace& workspace);
+
 // Distance of a flat surface from a node, in cells and positive outside the body, at which the body fills `fraction` of
 // the node's shape function (docs/theory.md, section on the gap).
 double surface_distance(ShapeFunction shape, double fraction);

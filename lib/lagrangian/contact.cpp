@@ -154,4 +154,15 @@ void LagrangianContact::see_trial(const Workspace& workspace) {
   gather();
 }
 
+void LagrangianContact::begin_change(const Workspace& workspace) {
+  for (const std::int64_t node : touched)
+    for (int c = 0; c < 3; ++c) push[node].c[c] = -workspace.reference_grid->nodes[node].f[c];
+}
+
+void LagrangianContact::end_change(const Workspace& workspace) {
+  for (const std::int64_t node : touched)
+    for (int c = 0; c < 3; ++c) push[node].c[c] += workspace.reference_grid->nodes[node].f[c];
+  gather();
+}
+
 }  // namespace ogive

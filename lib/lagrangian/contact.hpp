@@ -77,6 +77,9 @@ class LagrangianContact {
   void apply(const Workspace& workspace, std::vector<Vector3>* sum);
   // The change of the fields' velocities by the reference grid's own trial velocities.
   void see_trial(const Workspace& workspace);
+  // The same by what happens to those velocities between the two.
+  void begin_change(const Workspace& workspace);
+  void end_change(const Workspace& workspace);
 
   // Calls visit(field, the contact's field, node record) for all fields.
   template <class Space, class Visit>

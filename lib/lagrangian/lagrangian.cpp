@@ -9,6 +9,7 @@
 #include "audit.hpp"
 #include "boundary/boundary.hpp"
 #include "breakdown.hpp"
+#include "contact/contact.hpp"
 #include "error.hpp"
 #include "lagrangian/reference_grid.hpp"
 #include "loads/loads.hpp"
@@ -73,7 +74,6 @@ double mirror(const NodeWeight& at, int c) { return at.mirrored >> c & 1 ? -at.w
 // Node records hold {velocity at the beginning, mass | trial velocity}.
 void prescribe_points(State& state, Workspace& reference, double dt) {
   const std::size_t count = reference.prescribed_points.size();
-  if (count == 0) return;
   const auto for_weights = [&](std::size_t c, auto&& visit) {
     const std::int64_t begin = c == 0 ? 0 : reference.prescribed_points[c - 1].weights_end;
     for (std::int64_t i = begin; i < reference.prescribed_points[c].weights_end; ++i) visit(reference.point_weights[i]);
@@ -412,20 +412,30 @@ void set_lagrangian_velocities(Workspace& workspace) {
       });
 }
 
-void finish_lagrangian_step(const Model& model, State& state, Workspace& workspace, double dt) {
-  workspace.lagrangian_speed = 0;
+void hold_lagrangian(const Model& model, State& state, Workspace& workspace, double dt) {
   if (!workspace.reference_grid) return;
   Workspace& reference = *workspace.reference_grid;
-  const LagrangianContact& contact = workspace.lagrangian_contact;
+  LagrangianContact& contact = workspace.lagrangian_contact;
   for (const std::int64_t node : contact.touched) {
     NodeRecord& record = reference.nodes[node];
     for (int c = 0; c < 3; ++c) record.f[c] += contact.total[node][c];
   }
   add(state.ledger.boundary_impulse, contact.mirror_impulse);
   hold_faces(state, reference);
-  prescribe_points(state, reference, dt);
+  if (!reference.prescribed_points.empty()) {
+    contact.begin_change(workspace);
+    prescribe_points(state, reference, dt);
+    contact.end_change(workspace);
+    book_held_contact(state, workspace);
+  }
+  book_gravity(model, state, reference, kick_time(state, dt));
+}
+
+void finish_lagrangian_step(const Model& model, State& state, Workspace& workspace, double dt) {
+  workspace.lagrangian_speed = 0;
+  if (!workspace.reference_grid) return;
+  Workspace& reference = *workspace.reference_grid;
   const double kick = kick_time(state, dt);
-  book_gravity(model, state, reference, kick);
   unfold_motion(state, reference);
 
   // {velocity at the end, - | mean acceleration}, for the work of loads.

@@ -32,7 +32,10 @@ void kick_lagrangian(const Model& model, State& state, Workspace& workspace, dou
 void set_lagrangian_trial(Workspace& workspace);
 void set_lagrangian_velocities(Workspace& workspace);
 
-// Everything after contact.
+// After contact: its impulses, faces, and the velocities prescribed at points, (3.19).
+void hold_lagrangian(const Model& model, State& state, Workspace& workspace, double dt);
+
+// Moves the bodies, (3.20), and makes their stress and internal forces, (3.7).
 void finish_lagrangian_step(const Model& model, State& state, Workspace& workspace, double dt);
 
 }  // namespace ogive

@@ -525,6 +525,21 @@ TEST(TotalLagrangian, ClampsAcrossAMirrorGiveTheMomentumThatIsBooked) {
   const double fall = 0.5 * held.result({0}).mass * 1.4e9 * 0.01 * 0.01;  // m g^2 t^2 / 2, free
   measured("work_of_fall", held.ledger().external_work / fall);
   EXPECT_LE(std::abs(held.ledger().external_work), 1e-9 * fall);
+
+  // A wall that it is pressed against stops nothing that the clamp does not hold already: contact takes no energy.
+  Scene pressed;
+  pressed.grid(1, {0, 0, 0}, {8, 8, 8}).numerics(OGIVE_SHAPE_LINEAR, 0.5, {0, 0, -3e4});
+  pressed.add("bar", lagrangian(pressed.material("steel", steel()), {}), box_between({2, 2, 2}, {5, 5, 5}, 0.5));
+  pressed.check(ogive_clamp_add(pressed.get(), &clamp));
+  ogive_wall_def wall;
+  ogive_wall_def_init(&wall, sizeof wall);
+  wall.point[2] = 2;
+  wall.normal[2] = 1;
+  pressed.check(ogive_wall_add(pressed.get(), &wall));
+  pressed.prepare();
+  pressed.advance(0.01);
+  measured("taken_by_contact", pressed.ledger().contact_dissipation / fall);
+  EXPECT_LE(std::abs(pressed.ledger().contact_dissipation), 1e-9 * fall);
 }
 
 TEST(TotalLagrangian, WhatItCannotBeJoinedWithIsRefusedBeforeTheFirstStep) {
