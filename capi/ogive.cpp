@@ -309,6 +309,58 @@ void make_rigid(const Grid& grid, const ogive_body_def& def, const double* volum
   if (rules.prescribed()) rules.motion = {{0, v, w}};
 }
 
+// A particle that a body is to have.
+struct Seed {
+  Vector3 position{};
+  double volume = 0;
+  std::int32_t number = 0;
+};
+
+// The particles of each cell that is far from the line of the definition become one, in the place of the first of them. Mass and
+// centre of mass stay; mirror symmetry stays as well, because nodes lie on symmetry planes.
+void merge_far_seeds(const Grid& grid, const ogive_body_def& def, std::vector<Seed>& seeds) {
+  const Vector3 from = vector_of(def.coarse_from), to = vector_of(def.coarse_to);
+  Vector3 along{};
+  double length_squared = 0;
+  for (int c = 0; c < 3; ++c) {
+    along[c] = to[c] - from[c];
+    length_squared += along[c] * along[c];
+  }
+  const auto far = [&](const std::array<std::int64_t, 3>& cell) {
+    Vector3 centre{};
+    double part = 0, distance_squared = 0;
+    for (int c = 0; c < 3; ++c) {
+      centre[c] = grid.planar() && c == 2 ? 0 : grid.domain_min[c] + (static_cast<double>(cell[c]) + 0.5) * grid.cell_size;
+      part += (centre[c] - from[c]) * along[c];
+    }
+    part = length_squared > 0 ? std::clamp(part / length_squared, 0.0, 1.0) : 0.0;
+    for (int c = 0; c < 3; ++c) {
+      const double off = centre[c] - from[c] - part * along[c];
+      distance_squared += off * off;
+    }
+    return distance_squared > def.coarse_beyond * def.coarse_beyond;
+  };
+  std::map<std::array<std::int64_t, 3>, std::size_t> first;  // the place of each far cell's first particle
+  std::vector<Seed> kept;
+  for (const Seed& seed : seeds) {
+    std::array<std::int64_t, 3> cell{};
+    for (int c = 0; c < 3; ++c)
+      cell[c] = static_cast<std::int64_t>(std::floor((seed.position[c] - grid.domain_min[c]) / grid.cell_size));
+    if (!far(cell)) {
+      kept.push_back(seed);
+      continue;
+    }
+    const auto [at, fresh] = first.emplace(cell, kept.size());
+    if (fresh) kept.push_back({{}, 0, seed.number});
+    Seed& merged = kept[at->second];
+    for (int c = 0; c < 3; ++c) merged.position[c] += seed.volume * seed.position[c];
+    merged.volume += seed.volume;
+  }
+  for (const auto& [cell, place] : first)
+    for (double& coordinate : kept[place].position) coordinate /= kept[place].volume;
+  seeds = std::move(kept);
+}
+
 ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_body_def* def, std::int64_t count,
                             const double* xyz, const double* volume) {
   require_stage(world, Stage::Building, "ogive_body_add");
@@ -345,10 +397,17 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
   } catch (const Error& error) {
     throw Error(error.kind(), prefix + error.what());
   }
+  if (full.coarse_beyond != 0 && (rules.rigid() || rules.total_lagrangian()))
+    refuse(prefix + "coarse_beyond: must be 0 for a rigid or total Lagrangian body, got " + number_text(full.coarse_beyond));
+  if (!(full.coarse_beyond >= 0 && std::isfinite(full.coarse_beyond)))
+    refuse(prefix + "coarse_beyond: must be >= 0 and finite, got " + number_text(full.coarse_beyond));
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(full.coarse_from[axis]) || !std::isfinite(full.coarse_to[axis]))
+      refuse(prefix + "coarse_from and coarse_to: must be finite");
   std::vector<std::int64_t> kept;
-  std::vector<double> share;
+  std::vector<Seed> seeds;
   kept.reserve(static_cast<std::size_t>(count));
-  share.reserve(static_cast<std::size_t>(count));
+  seeds.reserve(static_cast<std::size_t>(count));
   for (std::int64_t p = 0; p < count; ++p) {
     const double* x = xyz + 3 * p;
     if (!(volume[p] > 0 && std::isfinite(volume[p])))
@@ -379,19 +438,21 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
     }
     if (part > 0) {
       kept.push_back(p);
-      share.push_back(part);
+      seeds.push_back({{x[0], x[1], x[2]}, volume[p] * part, static_cast<std::int32_t>(p)});
     }
   }
   if (kept.empty()) refuse(prefix + "nothing is left of it inside the symmetry faces");
 
+  if (full.coarse_beyond > 0) merge_far_seeds(grid, full, seeds);
+
   BodyState body;
-  body.particles = static_cast<std::int64_t>(kept.size());
+  body.particles = static_cast<std::int64_t>(seeds.size());
   allocate_particles(material, rules, body.particles, body);
   Vector3 momentum{};
   double mass_sum = 0;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const double* x = xyz + 3 * kept[i];
-    const double mass = material.density * volume[kept[i]] * share[i];
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    const Vector3& x = seeds[i].position;
+    const double mass = material.density * seeds[i].volume;
     for (int c = 0; c < 3; ++c) {
       const int d = (c + 1) % 3, e = (c + 2) % 3;
       body.position[4 * i + c] = x[c];
@@ -402,7 +463,7 @@ ogive_body_id add_particles(ogive_world* world, const char* name, const ogive_bo
     }
     body.position[4 * i + 3] = mass;
     body.velocity[4 * i + 3] = 1;
-    body.number[i] = static_cast<std::int32_t>(kept[i]);
+    body.number[i] = seeds[i].number;
     mass_sum += mass;
   }
   for (int c = 0; c < 3; ++c) body.totals.initial_velocity[c] = momentum[c] / mass_sum;

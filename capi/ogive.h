@@ -362,6 +362,13 @@ typedef struct ogive_body_def {
   double distortion_limit;    /* [-] > 1, infinity allowed. Default 10 */
   int32_t when_distorted;     /* OGIVE_DISTORTED_*. Default update */
   int32_t reserved1;
+  /* Deformable bodies. Fewer particles away from where things happen: in cells whose centre is farther than coarse_beyond from
+   * the line between coarse_from and coarse_to, a cell's particles become one, at their centre of mass with their volume. What
+   * has one particle a cell carries waves and elastic deformation well; it must not be where the body flows, tears or is hit
+   * (measured: docs/performance.md). */
+  double coarse_from[3];      /* [L]. Default 0 */
+  double coarse_to[3];        /* [L], may be the same point. Default 0 */
+  double coarse_beyond;       /* [L] > 0; 0: all particles as they are. Default 0 */
 } ogive_body_def;
 OGIVE_API void ogive_body_def_init(ogive_body_def* def, size_t size);
 

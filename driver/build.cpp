@@ -150,6 +150,11 @@ class Builder {
     assign(def.formulation, body.formulation);
     assign(def.distortion_limit, body.distortion_limit);
     assign(def.when_distorted, body.when_distorted);
+    if (body.coarse) {
+      def.coarse_beyond = body.coarse->beyond;
+      assign(def.coarse_from, body.coarse->from);
+      assign(def.coarse_to, body.coarse->to);
+    }
     ogive_body_id id{-1};
     if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
       ogive_solid_def shape;
@@ -302,6 +307,8 @@ std::vector<std::string> model_changes(const Scene& before, const Scene& after) 
     throw Failure(kExitInput, after.place(what) + ": cannot be changed by a restart, because the particles of the checkpoint "
                                                   "stand on it");
   };
+  must_stay(before.symmetry == after.symmetry, "symmetry");
+  must_stay(before.accuracy == after.accuracy, "accuracy");
   must_stay(before.units == after.units, "units");
   must_stay(before.grid == after.grid, "grid");
   must_stay(before.bodies == after.bodies, "bodies");

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "build.hpp"
+#include "plan.hpp"
 #include "scene.hpp"
 #include "text.hpp"
 
@@ -34,17 +34,14 @@ double measured_step_seconds(ogive_world* world) {
 }  // namespace
 
 ExitCode check(const std::string& scene_file, const std::vector<std::string>& settings) {
-  const Scene scene = read_scene(Document::from_file(scene_file, settings), scene_file);
-  const BuiltWorld built = build_world(scene);
-  ogive_world* const world = built.world.get();
-  for (const std::string& note : built.notes) std::printf("%s\n", note.c_str());
+  const PlannedScene planned = plan_scene(Document::from_file(scene_file, settings), scene_file);
+  const Scene& scene = planned.scene;
+  ogive_world* const world = planned.built.world.get();
+  for (const std::string& note : planned.built.notes) std::printf("%s\n", note.c_str());
 
-  ogive_status status = OGIVE_OK;
-  const std::string plan = text_of(
-      [&](char* text, size_t capacity, size_t* needed) { return ogive_world_plan(world, text, capacity, needed); },
-      status);
-  require_ok(status, world);
-  std::printf("%s\n\nplan:\n%s\n\nbodies:\n", scene.title.c_str(), plan.c_str());
+  std::printf("%s\n\nplan:\n%s", scene.title.c_str(), text_of(planned.decisions).c_str());
+  for (const std::string& line : engine_plan_of(world)) std::printf("%s\n", line.c_str());
+  std::printf("\nbodies:\n");
   for (size_t i = 0; i < scene.bodies.size(); ++i) {
     const ogive_body_result body = body_result_of(world, static_cast<int32_t>(i));
     std::printf("  %s: %s, %s particles, mass %s %s, %s to %s %s, speed %s %s\n", scene.bodies[i].name.c_str(),

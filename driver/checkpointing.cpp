@@ -29,8 +29,18 @@ std::string to_text(const DriverState& state) {
   json["wall_seconds"] = state.wall_seconds;
   json["initial_velocity"] = state.initial_velocity;
   json["last_velocity"] = state.last_velocity;
+  json["plan"] = plan_json(state.plan);
+  json["engine_plan"] = state.engine_plan;
   json["changes"] = state.changes;
   return json.dump();
+}
+
+std::vector<Decision> plan_of(const Json& json) {
+  std::vector<Decision> plan;
+  for (const Json& entry : json)
+    plan.push_back({entry.at("subject").get<std::string>(), entry.at("decision").get<std::string>(), entry.at("reason").get<std::string>(),
+                    entry.at("overrule").get<std::string>(), entry.at("taken").get<bool>()});
+  return plan;
 }
 
 DriverState from_text(const std::string& text) {
@@ -55,6 +65,8 @@ DriverState from_text(const std::string& text) {
   json.at("wall_seconds").get_to(state.wall_seconds);
   json.at("initial_velocity").get_to(state.initial_velocity);
   json.at("last_velocity").get_to(state.last_velocity);
+  if (json.contains("plan")) state.plan = plan_of(json.at("plan"));  // neither is in older checkpoints
+  if (json.contains("engine_plan")) json.at("engine_plan").get_to(state.engine_plan);
   if (json.contains("changes")) json.at("changes").get_to(state.changes);  // not in checkpoints of 0.2.0
   return state;
 }
@@ -110,6 +122,14 @@ std::vector<int64_t> checkpoints_in(const std::filesystem::path& directory) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json plan_json(const std::vector<Decision>& plan) {
+  Json list = Json::array();
+  for (const Decision& decision : plan)
+    list.push_back({{"subject", decision.subject}, {"decision", decision.decision}, {"reason", decision.reason},
+                    {"overrule", decision.overrule}, {"taken", decision.taken}});
+  return list;
+}
 
 std::string checkpoint_name(int64_t steps) {
   char name[48];

@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "decision.hpp"
 #include "world.hpp"
 
 namespace driver {
@@ -30,8 +32,13 @@ struct DriverState {
   // Of each body by name: the velocity at the start, and the last one while any of it was in the domain.
   std::map<std::string, std::array<double, 3>> initial_velocity;
   std::map<std::string, std::array<double, 3>> last_velocity;
+  std::vector<Decision> plan;        // of the run, and the engine's when it began, in lines
+  std::vector<std::string> engine_plan;
   std::vector<std::string> changes;  // what restarts changed, with the step: "step 1200: --set contact.friction=0.1"
 };
+
+/// The decisions as summaries and checkpoints keep them.
+nlohmann::ordered_json plan_json(const std::vector<Decision>& plan);
 
 std::string checkpoint_name(int64_t steps);
 

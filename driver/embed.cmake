@@ -1,5 +1,5 @@
 # Writes OUTPUT, a C++ file with the bytes of INPUTS (name=file ...) as string views in the namespace driver.
-set(text "#include \"study_assets.hpp\"\nnamespace driver {\nnamespace {\n")
+set(text "#include \"embedded.hpp\"\nnamespace driver {\nnamespace {\n")
 set(views "")
 foreach(input ${INPUTS})
   string(REGEX MATCH "^([^=]+)=(.*)$" whole ${input})

@@ -374,6 +374,7 @@ void Output::write_summary(ogive_world* world, const RunFacts& facts) const {
   json["external_impulse"] = json_of(ledger.external_impulse);
   json["energy"] = energy_json(ledger);
   json["maximum_speed_ever"] = ledger.maximum_speed_ever;
+  json["plan"] = {{"decisions", plan_json(state_.plan)}, {"engine", state_.engine_plan}};
   json["changes"] = state_.changes;
   json["warnings"] = facts.warnings;
   json["results"] = Json::object();

@@ -14,6 +14,7 @@
 #include "checkpointing.hpp"
 #include "directory_lock.hpp"
 #include "output.hpp"
+#include "plan.hpp"
 #include "progress.hpp"
 #include "scene.hpp"
 #include "text.hpp"
@@ -288,13 +289,16 @@ ExitCode run(const RunOptions& options) {
   Document document = Document::from_file(options.scene_file, options.settings);
   if (options.until) set_option(document, "stop.time", shortest(*options.until), "--until");
   if (options.threads) set_option(document, "numerics.threads", std::to_string(*options.threads), "--threads");
-  const Scene scene = read_scene(document, options.scene_file);
-  const std::filesystem::path directory = options.output ? std::filesystem::path(*options.output)
-                                                         : std::filesystem::path(scene.file.stem().string() + "-out");
+  const std::filesystem::path directory =
+      options.output ? std::filesystem::path(*options.output)
+                     : std::filesystem::path(std::filesystem::path(options.scene_file).stem().string() + "-out");
   require_usable_directory(directory, options.overwrite);
 
-  BuiltWorld built = build_world(scene);
+  PlannedScene planned = plan_scene(std::move(document), options.scene_file);
+  const Scene& scene = planned.scene;
+  BuiltWorld& built = planned.built;
   for (const std::string& note : built.notes) std::printf("%s\n", note.c_str());
+  std::printf("%s", text_of(planned.decisions).c_str());
   print_beginning(scene, built.world.get(), directory);
 
   // Only now that the whole model has been accepted is anything written.
@@ -305,6 +309,8 @@ ExitCode run(const RunOptions& options) {
   clear_directory(directory);
   DriverState state;
   state.scene_file = options.scene_file;
+  state.plan = planned.decisions;
+  state.engine_plan = engine_plan_of(built.world.get());
   return Simulation(scene, std::move(built.world), directory, std::move(state), [&] { return build_world(scene).world; })
       .run_from_start();
 }

@@ -4,6 +4,7 @@
 #include <ogive.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "expression.hpp"
@@ -88,6 +89,29 @@ Units read_units(const Section& root) {
   const Section units = root.table("units", Names{"length", "time", "mass"});
   return {read_unit(units, "length", length_unit_names()), read_unit(units, "time", time_unit_names()),
           read_unit(units, "mass", mass_unit_names())};
+}
+
+SymmetryScene read_symmetry(const Section& root) {
+  const auto choice = root.optional_choice("symmetry", {{"none", static_cast<int32_t>(SymmetryScene::none)},
+                                                        {"offer", static_cast<int32_t>(SymmetryScene::offered)},
+                                                        {"auto", static_cast<int32_t>(SymmetryScene::automatic)},
+                                                        {"axisymmetric", static_cast<int32_t>(SymmetryScene::axisymmetric)}});
+  return choice ? static_cast<SymmetryScene>(*choice) : SymmetryScene::offered;
+}
+
+/// "3%", or a number: 0.03.
+std::optional<double> read_accuracy(const Section& root) {
+  if (!root.has("accuracy")) return std::nullopt;
+  const std::string expected = "must be a part of the result > 0 and < 1, as \"3%\" or 0.03, got ";
+  std::string text = root.scalar("accuracy");
+  const bool percent = !text.empty() && text.back() == '%';
+  if (percent) text.pop_back();
+  double value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc{} || end != text.data() + text.size()) root.refuse("accuracy", expected + '"' + root.scalar("accuracy") + '"');
+  if (percent) value /= 100;
+  if (!(value > 0 && value < 1)) root.refuse("accuracy", expected + root.scalar("accuracy"));
+  return value;
 }
 
 GridScene read_grid(const Section& root) {
@@ -415,7 +439,7 @@ BodyScene read_body(const Section& bodies, const std::string& name, const Names&
                     const std::filesystem::path& scene_file) {
   const Names shapes = {"mesh", "box", "cylinder", "sphere", "ogive_rod", "particles"};
   const Names motion = {"material", "velocity", "angular_velocity", "angular_centre", "formulation", "motion",
-                        "distortion_limit", "when_distorted"};
+                        "distortion_limit", "when_distorted", "coarse"};
   const Names mesh_keys = {"axis",         "reference",         "position",      "scale",
                            "lattice_axis", "lattice_reference", "lattice_origin"};
   // The full list first, so that a slip in the shape's own key is not taken for a missing shape.
@@ -460,6 +484,13 @@ BodyScene read_body(const Section& bodies, const std::string& name, const Names&
   body.distortion_limit = any_shape.optional_number("distortion_limit", above_one);
   body.when_distorted = any_shape.optional_choice(
       "when_distorted", {{"update", OGIVE_DISTORTED_UPDATE}, {"stop", OGIVE_DISTORTED_STOP}});
+  if (const auto coarse = any_shape.optional_table("coarse", Names{"beyond", "from", "to"})) {
+    if (body.formulation.value_or(OGIVE_FORMULATION_DEFORMABLE) != OGIVE_FORMULATION_DEFORMABLE) {
+      any_shape.refuse("coarse", "needs formulation = \"deformable\"");
+    }
+    body.coarse = CoarseScene{coarse->number("beyond", kPositive), coarse->vector("from"), {}};
+    body.coarse->to = coarse->optional_vector("to").value_or(body.coarse->from);
+  }
   for (const Section& knot : any_shape.tables("motion", Names{"time", "velocity", "angular_velocity"})) {
     if (body.formulation != OGIVE_FORMULATION_RIGID_PRESCRIBED) {
       any_shape.refuse("motion", "needs formulation = \"rigid_prescribed\"");
@@ -594,7 +625,7 @@ OutputScene read_output(const Section& root, const Names& bodies, double stop_ti
 Scene read_scene(const Document& document, const std::filesystem::path& file) {
   const Expressions no_expressions;
   const Section bare_root(document, no_expressions, document.root(), "",
-                          Names{"title", "parameters", "units", "grid", "numerics", "contact", "walls", "materials",
+                          Names{"title", "symmetry", "accuracy", "parameters", "units", "grid", "numerics", "contact", "walls", "materials",
                                 "bodies", "clamps", "stop", "output"});
   const Expressions expressions = read_parameters(document, bare_root);
   const Section root(document, expressions, document.root(), "", std::nullopt);
@@ -604,6 +635,8 @@ Scene read_scene(const Document& document, const std::filesystem::path& file) {
   scene.text = document.text();
   scene.places = document.places();
   scene.title = root.optional_text("title").value_or(file.stem().string());
+  scene.symmetry = read_symmetry(root);
+  scene.accuracy = read_accuracy(root);
   scene.parameters = expressions.parameters();
   scene.units = read_units(root);
   scene.grid = read_grid(root);

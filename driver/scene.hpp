@@ -125,6 +125,14 @@ struct MotionScene {
   bool operator==(const MotionScene&) const = default;
 };
 
+/// Where a body has one particle a cell: farther than `beyond` from the line between two points.
+struct CoarseScene {
+  double beyond = 0;
+  Vector3 from{}, to{};
+
+  bool operator==(const CoarseScene&) const = default;
+};
+
 struct BodyScene {
   std::string name;
   std::string material;
@@ -132,6 +140,7 @@ struct BodyScene {
   std::vector<MotionScene> motion;  // empty: a constant one
   std::optional<double> distortion_limit;
   std::optional<int32_t> when_distorted;
+  std::optional<CoarseScene> coarse;
   Vector3 velocity{}, angular_velocity{}, angular_centre{};
   std::variant<MeshShape, SolidShape, ParticleFileShape> shape;
 
@@ -176,10 +185,16 @@ struct OutputScene {
   bool operator==(const OutputScene&) const = default;
 };
 
+/// What may be left out because the rest tells it: nothing is looked for; it is only said; half, quarter or eighth of a scene
+/// that mirrors itself is taken; the plane of a scene of revolution is taken.
+enum class SymmetryScene { none, offered, automatic, axisymmetric };
+
 struct Scene {
   std::filesystem::path file;
   std::string text;  // the file with every --set merged into it
   std::string title;
+  SymmetryScene symmetry = SymmetryScene::offered;
+  std::optional<double> accuracy;  // wanted error of discretisation, 0.03: 3 %
   std::map<std::string, double> parameters;
   Units units;
   GridScene grid;

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "files.hpp"
-#include "study_assets.hpp"
+#include "embedded.hpp"
 #include "study_cases.hpp"
 #include "study_file.hpp"
 #include "study_results.hpp"

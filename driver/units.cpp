@@ -50,6 +50,12 @@ std::string Units::energy() const {
   return name_of(named, size, mass + ' ' + length + "2/" + time + '2');
 }
 
+std::string Units::stress() const {
+  const double length_size = size_of(kLengths, length), time_size = size_of(kTimes, time);
+  const double size = size_of(kMasses, mass) / (length_size * time_size * time_size);
+  return name_of({{"Pa", 1.0}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}, size, mass + '/' + length + ' ' + time + '2');
+}
+
 double Units::size_of_unit(const std::string& unit, std::string& problem) const {
   problem.clear();
   if (unit == "-") return 1.0;

@@ -12,6 +12,7 @@ struct Units {
   /// Labels of derived units; a combination that is a usual unit is called by its name ("mm/ms" is "m/s").
   std::string speed() const;
   std::string energy() const;
+  std::string stress() const;
   /// Size in these units of a unit that is written as "m/s", "mJ", "kg m/s2", "%" or "-": what a value in these units is
   /// divided by to be one in that unit. On failure `problem` says why, otherwise it is empty.
   double size_of_unit(const std::string& unit, std::string& problem) const;

@@ -1,6 +1,8 @@
 // Ownership and errors of the C interface.
 #include "world.hpp"
 
+#include <sstream>
+
 namespace driver {
 
 World make_world() {
@@ -47,6 +49,16 @@ std::string text_of(const std::function<ogive_status(char*, size_t, size_t*)>& c
   text.resize(text.find('\0') == std::string::npos ? text.size() : text.find('\0'));
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text;
+}
+
+std::vector<std::string> engine_plan_of(const ogive_world* world) {
+  ogive_status status = OGIVE_OK;
+  std::istringstream text(text_of(
+      [&](char* to, size_t capacity, size_t* needed) { return ogive_world_plan(world, to, capacity, needed); }, status));
+  require_ok(status, world);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
 }
 
 ogive_progress progress_of(const ogive_world* world) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "failure.hpp"
 
@@ -27,6 +28,9 @@ void require_ok(ogive_status status, const ogive_world* world, const std::string
 /// Text of a call that writes at most `capacity` bytes and says how many are needed.
 std::string text_of(const std::function<ogive_status(char* text, size_t capacity, size_t* needed)>& call,
                     ogive_status& status);
+
+/// The engine's plan of a prepared world, in lines.
+std::vector<std::string> engine_plan_of(const ogive_world* world);
 
 ogive_progress progress_of(const ogive_world* world);
 ogive_ledger ledger_of(const ogive_world* world);

@@ -196,6 +196,9 @@ module ogive_c
     real(c_double) :: distortion_limit
     integer(c_int32_t) :: when_distorted
     integer(c_int32_t) :: reserved1
+    real(c_double) :: coarse_from(3)
+    real(c_double) :: coarse_to(3)
+    real(c_double) :: coarse_beyond
   end type ogive_body_def
 
   type, bind(C) :: ogive_solid_def

@@ -1,0 +1,219 @@
+// Mirror planes of a scene.
+//
+// Cheap questions first: faces, gravity, motion, walls, clamps, centres of mass. Then the particles themselves: each must have
+// a partner of the same volume at its mirror image. That sees whatever makes a body unsymmetric, however it was made: a hole, a
+// mesh, a list of particles, a lattice that is not the same on both sides.
+#include "mirror.hpp"
+
+#include <ogive.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "text.hpp"
+
+namespace driver {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // of a cell: places of particles that count as the same
+constexpr double kVolumeTolerance = 1e-6;
+
+std::string quoted(const std::string& name) { return '"' + name + '"'; }
+std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
+
+struct Particles {
+  std::vector<double> position;  // three each
+  std::vector<double> volume;
+};
+
+Particles particles_of(const ogive_world* world, int32_t body) {
+  const int64_t count = body_result_of(world, body).particles;
+  Particles particles;
+  particles.position.resize(static_cast<size_t>(3 * count));
+  particles.volume.resize(static_cast<size_t>(count));
+  require_ok(ogive_field_get(world, ogive_body_id{body}, "position", particles.position.data(), 3 * count), world);
+  require_ok(ogive_field_get(world, ogive_body_id{body}, "volume", particles.volume.data(), count), world);
+  return particles;
+}
+
+/// Particles by place, to be found within a tolerance that is far below their distances.
+class Places {
+ public:
+  Places(Particles particles, double cell, double tolerance)
+      : particles_(std::move(particles)), cell_(cell), tolerance_(tolerance) {
+    boxes_.reserve(particles_.volume.size());
+    for (size_t p = 0; p < particles_.volume.size(); ++p) boxes_.push_back({key({box_of(p, 0), box_of(p, 1), box_of(p, 2)}), p});
+    std::sort(boxes_.begin(), boxes_.end());
+  }
+
+  const Particles& particles() const { return particles_; }
+
+  /// The particle at a place, -1 if there is none.
+  int64_t find(const std::array<double, 3>& place) const {
+    std::array<std::array<int64_t, 2>, 3> range;
+    for (size_t c = 0; c < 3; ++c)
+      range[c] = {box(place[c] - tolerance_), box(place[c] + tolerance_)};
+    for (int64_t i = range[0][0]; i <= range[0][1]; ++i)
+      for (int64_t j = range[1][0]; j <= range[1][1]; ++j)
+        for (int64_t k = range[2][0]; k <= range[2][1]; ++k) {
+          const uint64_t wanted = key({i, j, k});
+          for (auto at = std::lower_bound(boxes_.begin(), boxes_.end(), std::pair<uint64_t, size_t>{wanted, 0});
+               at != boxes_.end() && at->first == wanted; ++at) {
+            const double* x = &particles_.position[3 * at->second];
+            if (std::abs(x[0] - place[0]) <= tolerance_ && std::abs(x[1] - place[1]) <= tolerance_ &&
+                std::abs(x[2] - place[2]) <= tolerance_)
+              return static_cast<int64_t>(at->second);
+          }
+        }
+    return -1;
+  }
+
+ private:
+  int64_t box(double coordinate) const { return static_cast<int64_t>(std::floor(coordinate / cell_)); }
+  int64_t box_of(size_t particle, size_t axis) const { return box(particles_.position[3 * particle + axis]); }
+  static uint64_t key(const std::array<int64_t, 3>& box) {
+    uint64_t value = 0;
+    for (const int64_t index : box) value = value * 0x9E3779B97F4A7C15U + static_cast<uint64_t>(index);
+    return value ^ (value >> 31);
+  }
+
+  Particles particles_;
+  double cell_, tolerance_;
+  std::vector<std::pair<uint64_t, size_t>> boxes_;  // key of its box and number, of each particle, by key
+};
+
+bool nearly(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
+
+/// What of a motion is not the same behind the plane; "" if nothing.
+std::string unsymmetric_motion(const Vector3& velocity, const Vector3& angular_velocity, int axis) {
+  const auto across = static_cast<size_t>(axis);
+  if (velocity[across] != 0) return "has the velocity " + brief(velocity[across]) + " along " + axis_name(axis);
+  for (size_t c = 0; c < 3; ++c)
+    if (c != across && angular_velocity[c] != 0) return "turns about " + axis_name(static_cast<int>(c));
+  return "";
+}
+
+/// Whether two clamps, or one and itself, are each other's mirror image.
+bool are_images(const ClampScene& a, const ClampScene& b, int axis, double at, double tolerance) {
+  if (a.region != b.region || a.body != b.body || a.axes != b.axes || a.radius != b.radius) return false;
+  const bool box = a.region == OGIVE_REGION_BOX;
+  bool same = true, opposite = true;  // directions of cylinders
+  for (int c = 0; c < 3; ++c) {
+    const auto i = static_cast<size_t>(c);
+    const double sign = c == axis ? -1 : 1, shift = c == axis ? 2 * at : 0;
+    const double lower = box && c == axis ? b.b[i] : b.a[i], upper = box && c == axis ? b.a[i] : b.b[i];
+    if (!nearly(a.a[i], shift + sign * lower, tolerance)) return false;
+    if (box && !nearly(a.b[i], shift + sign * upper, tolerance)) return false;
+    same = same && nearly(a.b[i], sign * b.b[i], 1e-12);
+    opposite = opposite && nearly(a.b[i], -sign * b.b[i], 1e-12);
+  }
+  return box || same || opposite;
+}
+
+/// What of the scene, its particles left out, is not the same on both sides of the plane; "" if nothing.
+std::string unsymmetric_rules(const Scene& scene, int axis, double at) {
+  const auto across = static_cast<size_t>(axis);
+  const double tolerance = kTolerance * scene.grid.cell_size;
+  if (scene.numerics.gravity[across] != 0) return "gravity pulls along " + axis_name(axis);
+  for (const BodyScene& body : scene.bodies) {
+    std::string problem = unsymmetric_motion(body.velocity, body.angular_velocity, axis);
+    for (const MotionScene& knot : body.motion)
+      if (problem.empty()) problem = unsymmetric_motion(knot.velocity, knot.angular_velocity, axis);
+    if (!problem.empty()) return "body " + quoted(body.name) + ' ' + problem;
+  }
+  for (size_t i = 0; i < scene.walls.size(); ++i)
+    if (std::abs(scene.walls[i].normal[across]) > 1e-12)
+      return "wall " + std::to_string(i) + " looks along " + axis_name(axis);
+  for (size_t i = 0; i < scene.clamps.size(); ++i) {
+    const auto is_image = [&](const ClampScene& other) { return are_images(scene.clamps[i], other, axis, at, tolerance); };
+    if (std::none_of(scene.clamps.begin(), scene.clamps.end(), is_image))
+      return "clamp " + std::to_string(i) + " has no mirror image";
+  }
+  return "";
+}
+
+/// What of a body's particles is not the same on both sides of the plane; "" if nothing.
+std::string unsymmetric_particles(const Places& places, int axis, double at) {
+  const Particles& particles = places.particles();
+  const auto across = static_cast<size_t>(axis);
+  for (size_t p = 0; p < particles.volume.size(); ++p) {
+    const double* x = &particles.position[3 * p];
+    std::array<double, 3> image{x[0], x[1], x[2]};
+    image[across] = 2 * at - image[across];
+    const int64_t partner = places.find(image);
+    const bool same_volume = partner >= 0 && nearly(particles.volume[static_cast<size_t>(partner)], particles.volume[p],
+                                                    kVolumeTolerance * particles.volume[p]);
+    if (same_volume) continue;
+    return std::string(partner < 0 ? "has nothing" : "has another volume") + " at the mirror image of its particle at (" +
+           brief(x[0]) + ", " + brief(x[1]) + ", " + brief(x[2]) + ')';
+  }
+  return "";
+}
+
+/// All but the particles: where a plane could be, or why there is none.
+MirrorPlane possible_plane(const Scene& scene, const ogive_world* world, int axis) {
+  const auto across = static_cast<size_t>(axis);
+  const GridScene& grid = scene.grid;
+  const double tolerance = kTolerance * grid.cell_size;
+  MirrorPlane plane;
+  plane.axis = axis;
+  const int32_t lower_face = grid.faces[2 * across], upper_face = grid.faces[2 * across + 1];
+  if (lower_face == OGIVE_FACE_SYMMETRY || upper_face == OGIVE_FACE_SYMMETRY) {
+    plane.already = true;
+    plane.reason = "the scene has a symmetry face there";
+    return plane;
+  }
+  if (lower_face != upper_face) {
+    plane.reason = "one face of the domain is fixed, the other free";
+    return plane;
+  }
+  const double middle = 0.5 * (grid.lower[across] + grid.upper[across]);
+  plane.at = body_result_of(world, 0).centre[across];
+  for (const double round : {middle, 0.0})  // sums of many particles are not exact
+    if (nearly(plane.at, round, tolerance)) plane.at = round;
+  if (lower_face == OGIVE_FACE_FIXED && !nearly(plane.at, middle, tolerance)) {
+    plane.reason = "the fixed faces are not equally far from body " + quoted(scene.bodies[0].name);
+    return plane;
+  }
+  plane.reason = unsymmetric_rules(scene, axis, plane.at);
+  for (size_t b = 0; b < scene.bodies.size() && plane.reason.empty(); ++b) {
+    const double centre = body_result_of(world, static_cast<int32_t>(b)).centre[across];
+    if (nearly(centre, plane.at, tolerance)) continue;
+    plane.reason = "the centres of mass of " + quoted(scene.bodies[0].name) + " and " + quoted(scene.bodies[b].name) + " are " +
+                   brief(std::abs(centre - plane.at)) + ' ' + scene.units.length + " apart along " + axis_name(axis);
+  }
+  plane.found = plane.reason.empty();
+  return plane;
+}
+
+}  // namespace
+
+std::vector<MirrorPlane> mirror_planes(const Scene& scene, const ogive_world* world) {
+  std::vector<MirrorPlane> planes;
+  const int axes = scene.grid.space == OGIVE_SPACE_THREE_DIMENSIONAL ? 3 : 2;
+  bool any = false;
+  for (int axis = scene.grid.space == OGIVE_SPACE_AXISYMMETRIC ? 1 : 0; axis < axes; ++axis) {
+    planes.push_back(possible_plane(scene, world, axis));
+    any = any || planes.back().found;
+  }
+  if (!any) return planes;
+  for (size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Places places(particles_of(world, static_cast<int32_t>(b)), scene.grid.cell_size, kTolerance * scene.grid.cell_size);
+    for (MirrorPlane& plane : planes) {
+      if (!plane.found) continue;
+      const std::string problem = unsymmetric_particles(places, plane.axis, plane.at);
+      if (problem.empty()) continue;
+      plane.found = false;
+      plane.reason = "body " + quoted(scene.bodies[b].name) + ' ' + problem;
+    }
+  }
+  for (MirrorPlane& plane : planes)
+    if (plane.found)
+      plane.reason = "every body is its own mirror image, particle by particle, and nothing moves, pulls or holds across the plane";
+  return planes;
+}
+
+}  // namespace driver

@@ -1,0 +1,150 @@
+// How fine the cells must be for a wanted error.
+//
+// The evidence is docs/data/resolution.csv, which tools/resolution_table.py writes from runs: of some scenes the error of a
+// result, against the limit of fine cells, by the number of cells across the thinnest body. The envelope of a series is the
+// largest error with as many cells or more; between two points it goes with a power of their number. All series must be
+// within the wanted error.
+#include "resolution.hpp"
+
+#include <ogive.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "filled_mesh.hpp"
+#include "embedded.hpp"
+
+namespace driver {
+namespace {
+
+struct Point {
+  double cells, error;
+};
+
+/// Of each series: the envelope, from few cells to many.
+const std::vector<std::vector<Point>>& envelopes() {
+  static const std::vector<std::vector<Point>> all = [] {
+    std::map<std::string, std::vector<Point>> series;
+    std::istringstream lines{std::string(resolution_data)};
+    std::string line;
+    std::getline(lines, line);  // scene,result,cells_across,cell,value,error
+    while (std::getline(lines, line)) {
+      std::vector<std::string> fields;
+      std::istringstream row(line);
+      for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
+      if (fields.size() >= 6) series[fields[0] + ',' + fields[1]].push_back({std::stod(fields[2]), std::abs(std::stod(fields[5]))});
+    }
+    std::vector<std::vector<Point>> result;
+    for (auto& [name, points] : series) {
+      std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.cells < b.cells; });
+      for (size_t i = points.size() - 1; i-- > 0;) points[i].error = std::max(points[i].error, points[i + 1].error);
+      result.push_back(points);
+    }
+    return result;
+  }();
+  return all;
+}
+
+double smallest(const Vector3& v) { return std::min({v[0], v[1], v[2]}); }
+
+/// Smallest of the extents along three directions at right angles, the first as given.
+double smallest_extent(const std::vector<double>& points, const Vector3& axis) {
+  const double length = std::hypot(axis[0], axis[1], axis[2]);
+  const Vector3 w{axis[0] / length, axis[1] / length, axis[2] / length};
+  size_t least = 0;
+  for (size_t c = 1; c < 3; ++c)
+    if (std::abs(w[c]) < std::abs(w[least])) least = c;
+  Vector3 u{};
+  for (size_t c = 0; c < 3; ++c) u[c] = (c == least ? 1.0 : 0.0) - w[least] * w[c];
+  const double norm = std::hypot(u[0], u[1], u[2]);
+  for (double& c : u) c /= norm;
+  const Vector3 v{w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]};
+  double extent = std::numeric_limits<double>::infinity();
+  for (const Vector3& direction : {u, v, w}) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (size_t i = 0; i + 2 < points.size(); i += 3) {
+      const double at = points[i] * direction[0] + points[i + 1] * direction[1] + points[i + 2] * direction[2];
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    extent = std::min(extent, high - low);
+  }
+  return extent;
+}
+
+}  // namespace
+
+double smallest_measure(const BodyScene& body, const Scene& scene) {
+  if (const auto* mesh = std::get_if<MeshShape>(&body.shape))
+    return smallest_extent(fill_mesh(*mesh, scene.grid, scene.place("bodies." + body.name + ".mesh")).vertices, mesh->axis);
+  const auto* solid = std::get_if<SolidShape>(&body.shape);
+  if (!solid) return std::numeric_limits<double>::infinity();  // particles of a file, which cannot be made finer anyway
+  const Vector3& size = solid->size;
+  switch (solid->solid) {
+    case OGIVE_SOLID_BOX:
+      return smallest(size);
+    case OGIVE_SOLID_CYLINDER:  // radius, length, inner radius
+      return std::min(size[2] > 0 ? size[0] - size[2] : 2 * size[0], size[1]);
+    case OGIVE_SOLID_SPHERE:
+      return 2 * size[0];
+    default:  // ogive rod: radius, length
+      return std::min(2 * size[0], size[1]);
+  }
+}
+
+Thinnest thinnest_body(const Scene& scene) {
+  const auto rigid = [](const BodyScene& body) {
+    return body.formulation == OGIVE_FORMULATION_RIGID_FREE || body.formulation == OGIVE_FORMULATION_RIGID_PRESCRIBED;
+  };
+  const bool all_rigid = std::all_of(scene.bodies.begin(), scene.bodies.end(), rigid);
+  Thinnest thinnest{"", std::numeric_limits<double>::infinity()};
+  for (const BodyScene& body : scene.bodies) {
+    if (rigid(body) && !all_rigid) continue;
+    const double measure = smallest_measure(body, scene);
+    if (measure < thinnest.measure || thinnest.body.empty()) thinnest = {body.name, measure};
+  }
+  return thinnest;
+}
+
+std::optional<double> cells_for(double error) {
+  if (error < smallest_error()) return std::nullopt;
+  double cells = 0;
+  for (const std::vector<Point>& points : envelopes()) {
+    double needed = points.front().cells;
+    for (size_t i = 0; i + 1 < points.size(); ++i) {
+      if (points[i].error <= error) break;
+      const Point &a = points[i], &b = points[i + 1];
+      needed = b.error > error ? b.cells
+                               : a.cells * std::pow(b.cells / a.cells, std::log(a.error / error) / std::log(a.error / b.error));
+    }
+    cells = std::max(cells, needed);
+  }
+  return cells;
+}
+
+std::optional<double> error_with(double cells) {
+  double error = 0;
+  for (const std::vector<Point>& points : envelopes()) {
+    if (cells < points.front().cells) return std::nullopt;
+    size_t i = 0;
+    while (i + 1 < points.size() && points[i + 1].cells <= cells) ++i;
+    const Point& a = points[i];
+    double here = a.error;
+    if (i + 1 < points.size() && a.error > points[i + 1].error)
+      here *= std::pow(cells / a.cells, std::log(points[i + 1].error / a.error) / std::log(points[i + 1].cells / a.cells));
+    error = std::max(error, here);
+  }
+  return error;
+}
+
+double smallest_error() {
+  double error = 0;
+  for (const std::vector<Point>& points : envelopes()) error = std::max(error, points.back().error);
+  return error;
+}
+
+}  // namespace driver

@@ -1,0 +1,30 @@
+// How fine the cells must be for a wanted error, from what the studies measured.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene.hpp"
+
+namespace driver {
+
+/// The smallest measure of a body: of a plate its thickness, of a rod its diameter, of a tube its wall.
+struct Thinnest {
+  std::string body;
+  double measure = 0;  // in the scene's unit of length
+};
+
+/// Of one body; infinite where it is not known (particles of a file).
+double smallest_measure(const BodyScene& body, const Scene& scene);
+
+/// Among bodies that deform, or among all if none does. Meshes are read.
+Thinnest thinnest_body(const Scene& scene);
+
+/// Cells across the thinnest body at which every study's error is at most `error` (0.03: 3 %); none if no study is so good.
+std::optional<double> cells_for(double error);
+/// The largest error of a study with so many cells; none if they are fewer than any study had.
+std::optional<double> error_with(double cells);
+/// The smallest error that cells_for knows an answer to.
+double smallest_error();
+
+}  // namespace driver

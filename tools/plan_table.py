@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+"""Full model against planned model of every example scene: cost and difference in the result.
+
+  plan_table.py [--program build/release/bin/ogive] [--work DIR] [--only SCENE] [--table-only]
+
+The example scenes are written as the halves and quarters that a user would make by hand. Here their symmetry faces are taken
+away first (the full model); the planned model is the full one with symmetry = "auto", and where the scene is one of
+revolution another with symmetry = "axisymmetric". Everything on one thread; cost is the processor time of stepping. Writes
+docs/data/plan.csv and the table between the markers of docs/performance.md. Runs in DIR that are finished are not run again.
+"""
+
+import argparse
+import csv
+import json
+import os
+import re
+import subprocess
+import tempfile
+
+from plot_common import Refused, run_main
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+DATA = os.path.join(ROOT, "docs", "data", "plan.csv")
+PAGE = os.path.join(ROOT, "docs", "performance.md")
+QUIET = ["output.particle_interval=0", "output.checkpoint_steps=0", "numerics.threads=1"]
+HELD_BEAM = ("clamps=[" + ",".join('{body="beam",region="box",lower=[%s,0,0],upper=[%s,1000,"depth"]}' % ends
+                                   for ends in (('"1000-cell"', "1000"), ("-1000", '"cell-1000"'))) + "]")
+# Scene: (label, what makes it whole, result and where it stands in summary.json, unit, of revolution). After the flight axis
+# of a scene of revolution has become y, results along z are found there.
+SCENES = {
+    "thick_plate": ("thick plate, 575 m/s", ["grid.faces.y_min=free", "grid.lower.1=-60"], "residual velocity",
+                    ["results", "residual_velocity"], "m/s", False),
+    "steel_ball": ("steel ball", ["grid.faces.x_min=free", "grid.faces.y_min=free", 'grid.lower.0="-cell*(rint(plate_radius/cell)+3)"',
+                                  'grid.lower.1="-cell*(rint(plate_radius/cell)+3)"'],
+                   "residual velocity", ["results", "residual_velocity"], "m/s", True),
+    "taylor_copper": ("copper bar", ["grid.faces.x_min=free", "grid.faces.y_min=free", "grid.lower.0=-12", "grid.lower.1=-12"],
+                      "final length", ["bodies", "bar", "upper", 2], "mm", True),
+    "rings": ("rings", ["grid.faces.y_min=free", "grid.faces.z_min=free", "grid.lower.1=-80", "grid.lower.2=-14"],
+              "speed of the second", ["bodies", "right", "velocity", 0], "m/s", False),
+    "two_spheres": ("two spheres", ["grid.faces.y_min=free", "grid.faces.z_min=free", "grid.lower.1=-6", "grid.lower.2=-6"],
+                    "speed of the second", ["bodies", "second", "velocity", 0], "", False),
+    "rolling_sphere": ("rolling sphere", ["grid.faces.y_min=free", "grid.lower.1=-2.4"], "way", ["bodies", "sphere", "centre", 0], "m", False),
+    "rolling_cylinder": ("rolling cylinder", ["grid.faces.y_min=free", "grid.lower.1=-2"], "way", ["bodies", "cylinder", "centre", 0], "m",
+                         False),
+    "beam_on_cylinder": ("beam on a cylinder", ["grid.faces.x_min=free", "grid.lower.0=-1500"], "speed of the beam",
+                         ["bodies", "beam", "velocity", 1], "m/s", False),
+    "cylinder_on_beam": ("cylinder on a beam", ["grid.faces.x_min=free", "grid.lower.0=-1500", HELD_BEAM], "centre of the beam",
+                         ["bodies", "beam", "centre", 1], "mm", False),
+    "four_spheres": ("four spheres", [], "speed of the striker", ["bodies", "striker", "velocity", 2], "m/s", False),
+}
+COLUMNS = ["scene", "model", "particles", "steps", "seconds", "megabytes", "result", "value"]
+
+
+def run(program, work, scene, model, settings):
+    directory = os.path.join(work, f"{scene}-{model}")
+    summary = os.path.join(directory, "summary.json")
+    if not os.path.exists(summary):
+        command = [program, "run", os.path.join(ROOT, "examples", "scenes", scene, "scene.toml"), "-o", directory, "--overwrite"]
+        command += [part for setting in QUIET + settings for part in ("--set", setting)]
+        # By a shell: this process's own memory would be in the peak of a child of its own.
+        subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], check=True, stdout=subprocess.DEVNULL)
+    with open(summary, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def rows_of(program, work, scene):
+    _, whole, result, path, _, of_revolution = SCENES[scene]
+    rows = []
+    models = {"full": ["symmetry=none"], "planned": ["symmetry=auto"]}
+    if of_revolution:
+        models["axisymmetric"] = ["symmetry=axisymmetric"]
+    for model, settings in models.items():
+        summary = run(program, work, scene, model, whole + settings)
+        value = summary
+        for key in path[:-1] + [1] if model == "axisymmetric" and path[-1] == 2 else path:
+            value = value[key]
+        rows.append({"scene": scene, "model": model, "particles": summary["particles"], "steps": summary["steps"],
+                     "seconds": f"{summary['cpu_seconds']['stepping']:.4g}", "megabytes": f"{summary['peak_memory_bytes'] / 1e6:.4g}",
+                     "result": result, "value": f"{value:.10g}"})
+    return rows
+
+
+def table(rows):
+    lines = ["| scene | planned model | particles | processor time [s] | faster | memory [MB] | result | full | planned | difference |",
+             "|---|---|---|---|---|---|---|---|---|---|"]
+    for scene, (label, _, result, _, unit, _) in SCENES.items():
+        of = {row["model"]: row for row in rows if row["scene"] == scene}
+        for model in ("planned", "axisymmetric"):
+            if model not in of:
+                continue
+            full, row = of["full"], of[model]
+            share = int(full["particles"]) / int(row["particles"])
+            what = "axisymmetric" if model == "axisymmetric" else {1: "whole", 2: "half", 4: "quarter", 8: "eighth"}[round(share)]
+            slow, fast = float(full["seconds"]), float(row["seconds"])
+            difference = float(row["value"]) / float(full["value"]) - 1
+            lines.append(f"| {label} | {what} | {int(full['particles']):,} / {int(row['particles']):,} | {slow:.3g} / {fast:.3g} | "
+                         f"**{slow / fast:.3g}** | {float(full['megabytes']):.3g} / {float(row['megabytes']):.3g} | {result} | "
+                         f"{float(full['value']):.5g} {unit} | {float(row['value']):.5g} {unit} | "
+                         + (f"{100 * difference:+.2f} %" if abs(difference) > 1e-6 else f"{difference:+.1e}") + " |")
+    return "\n".join(lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=os.path.join(ROOT, "build", "release", "bin", "ogive"))
+    parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
+    parser.add_argument("--only", choices=list(SCENES))
+    parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
+    arguments = parser.parse_args()
+    rows = []
+    if os.path.exists(DATA):
+        with open(DATA, encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+    if not arguments.table_only:
+        with tempfile.TemporaryDirectory() as temporary:
+            work = arguments.work or temporary
+            os.makedirs(work, exist_ok=True)
+            for scene in [arguments.only] if arguments.only else list(SCENES):
+                rows = [row for row in rows if row["scene"] != scene] + rows_of(arguments.program, work, scene)
+        with open(DATA, "w", encoding="utf-8", newline="") as file:
+            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+    with open(PAGE, encoding="utf-8") as file:
+        page = file.read()
+    page, count = re.subn(r"(<!-- plan:begin -->\n).*?(<!-- plan:end -->)", lambda m: m[1] + table(rows) + "\n" + m[2], page, flags=re.DOTALL)
+    if count != 1:
+        raise Refused("docs/performance.md has no place for plan")
+    with open(PAGE, "w", encoding="utf-8") as file:
+        file.write(page)
+    print(table(rows))
+
+
+if __name__ == "__main__":
+    run_main(main)
