@@ -168,7 +168,7 @@ class Planner {
       return;
     }
     std::vector<Setting> settings;
-    for (const MirrorPlane& plane : mirror_planes(scene_, built_.world.get())) {
+    for (const MirrorPlane& plane : mirror_planes(scene_, built_.world.get(), scene_.symmetry != SymmetryScene::offered)) {
       const std::string axis(1, "xyz"[plane.axis]);
       const std::string name = axis + " = " + brief(plane.at);
       const std::string subject = "symmetry in " + axis;
