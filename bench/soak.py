@@ -40,6 +40,7 @@ class Scene:
 
     def __init__(self, seed):
         self.random = random.Random(seed)
+        self.added = random.Random(f"{seed} added")  # what came later: the scenes of a seed stay otherwise as they were
         r = self.random
         # One unit of length, time and mass of the numbers below, in the scene's units.
         self.L, self.T, self.M = (10 ** r.uniform(-4, 4) if r.random() < 0.5 else 1.0 for _ in range(3))
@@ -239,7 +240,7 @@ class Scene:
             self.value("maximum_time_step", 0.1 * self.end * self.T)
         if self.chance(0.3):
             self.value("gravity", [x * 0.01 * max(self.waves) / self.end * self.L / self.T ** 2 for x in self.direction()])
-        if self.chance(0.3):
+        if self.added.random() < 0.3:
             self.say("drop_debris = true")
         self.say("[contact]")
         self.rule()
@@ -275,7 +276,7 @@ class Scene:
             if self.chance(0.5):
                 self.value("settle_window", 0.2 * self.end * self.T)
                 self.value("settle_tolerance", self.speed(1e-3 * max(self.waves)))
-        if self.chance(0.2):
+        if self.added.random() < 0.2:
             self.value("exchange_window", 0.1 * self.end * self.T)
         self.say("[output]")
         self.value("checkpoint_steps", 0)
