@@ -40,6 +40,7 @@ class Scene:
 
     def __init__(self, seed):
         self.random = random.Random(seed)
+        self.added = random.Random(f"{seed} added")  # what came later: the scenes of a seed stay otherwise as they were
         r = self.random
         # One unit of length, time and mass of the numbers below, in the scene's units.
         self.L, self.T, self.M = (10 ** r.uniform(-4, 4) if r.random() < 0.5 else 1.0 for _ in range(3))
@@ -239,6 +240,8 @@ class Scene:
             self.value("maximum_time_step", 0.1 * self.end * self.T)
         if self.chance(0.3):
             self.value("gravity", [x * 0.01 * max(self.waves) / self.end * self.L / self.T ** 2 for x in self.direction()])
+        if self.added.random() < 0.3:
+            self.say("drop_debris = true")
         self.say("[contact]")
         self.rule()
         if len(self.names) > 1 and self.chance(0.4):
@@ -273,6 +276,8 @@ class Scene:
             if self.chance(0.5):
                 self.value("settle_window", 0.2 * self.end * self.T)
                 self.value("settle_tolerance", self.speed(1e-3 * max(self.waves)))
+        if self.added.random() < 0.2:
+            self.value("exchange_window", 0.1 * self.end * self.T)
         self.say("[output]")
         self.value("checkpoint_steps", 0)
         self.value("history_interval", 0.5 * self.end * self.T)
@@ -321,11 +326,11 @@ def judge(directory, code, errors):
     first, last = rows[0], rows[-1]
     number = lambda row, key: float(row[key])
     mass = number(first, "mass")
-    if abs(number(last, "mass") + number(last, "left_domain_mass") - mass) > EXACT * mass:
+    if abs(number(last, "mass") + number(last, "left_domain_mass") + number(last, "dropped_mass") - mass) > EXACT * mass:
         return "FAILED", "mass is not accounted for"
     scale = mass * number(last, "maximum_speed_ever")
     for axis in "xyz":
-        now = number(last, f"momentum_{axis}") + number(last, f"left_domain_momentum_{axis}")
+        now = sum(number(last, f"{which}momentum_{axis}") for which in ("", "left_domain_", "dropped_"))
         boundary, external = number(last, f"boundary_impulse_{axis}"), number(last, f"external_impulse_{axis}")
         given = boundary + external
         # What is held under gravity has no momentum, but two impulses that cancel, each with its round-off.

@@ -920,6 +920,7 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
   defaults.xpic_order = numerics.xpic_order;
   defaults.energy_warning = numerics.energy_warning;
   defaults.energy_limit = numerics.energy_limit;
+  defaults.drop_debris = numerics.drop_debris;
   initialise(def, size, defaults);
 }
 
@@ -938,6 +939,9 @@ ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_d
     trial.numerics.xpic_order = full.xpic_order;
     trial.numerics.energy_warning = full.energy_warning;
     trial.numerics.energy_limit = full.energy_limit;
+    if (full.drop_debris != 0 && full.drop_debris != 1)
+      refuse("drop_debris: must be 0 or 1, got " + std::to_string(full.drop_debris));
+    trial.numerics.drop_debris = full.drop_debris != 0;
     trial.validate_numerics();
     set_threads(world, full.threads);
     model.numerics = trial.numerics;
@@ -1336,6 +1340,7 @@ void ogive_stop_def_init(ogive_stop_def* def, size_t size) {
   ogive_stop_def defaults{};
   defaults.body.index = -1;
   defaults.stop_when_stopped = defaults.stop_when_out = 1;
+  defaults.exchange_tolerance = Stop{}.exchange_tolerance;
   initialise(def, size, defaults);
 }
 
@@ -1344,16 +1349,15 @@ ogive_status ogive_world_set_stop(ogive_world* world, const ogive_stop_def* def)
     Model& model = changeable(world, "ogive_world_set_stop");
     const ogive_stop_def full = complete(def, "def", ogive_stop_def_init);
     require_body_or_none(world, full.body, "stop body");
-    if (!(full.settle_window >= 0 && std::isfinite(full.settle_window)))
-      refuse("settle_window: must be >= 0 and finite, got " + std::to_string(full.settle_window));
-    if (full.settle_window > 0 && !(full.settle_tolerance > 0 && std::isfinite(full.settle_tolerance)))
-      refuse("settle_tolerance: must be > 0 and finite, got " + std::to_string(full.settle_tolerance));
     Stop stop;
     stop.body = full.body.index;
     stop.settle_window = full.settle_window;
     stop.settle_tolerance = full.settle_tolerance;
     stop.when_stopped = full.stop_when_stopped != 0;
     stop.when_out = full.stop_when_out != 0;
+    stop.exchange_window = full.exchange_window;
+    stop.exchange_tolerance = full.exchange_tolerance;
+    model.validate_stop(stop);
     model.stop = stop;
   });
 }
@@ -1435,10 +1439,11 @@ static void tell_events(ogive_world* world, const std::vector<BodyTotals>& befor
                           std::to_string(world->state.time) + ", step " + std::to_string(world->state.steps)).c_str());
     };
     if (before[b].failed_particles == 0 && now.failed_particles > 0) first(OGIVE_LOG_INFO, "first failed particle");
-    if (before[b].left_particles == 0 && now.left_particles > 0)
+    if (before[b].left.particles == 0 && now.left.particles > 0)
       first(OGIVE_LOG_WARNING, "first particle that leaves the domain");
+    if (before[b].dropped.particles == 0 && now.dropped.particles > 0) first(OGIVE_LOG_INFO, "first debris dropped");
   }
-  static const char* const reasons[] = {"", "settled", "stopped", "out"};
+  static const char* const reasons[] = {"", "settled", "stopped", "out", "exchange ended"};
   if (stop_before == 0 && world->state.stop.reason != 0)
     tell(world, OGIVE_LOG_INFO, (std::string("stop condition met: ") + reasons[world->state.stop.reason]).c_str());
 }
@@ -1533,15 +1538,19 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
       full.mass += audit.mass;
       full.kinetic += audit.kinetic;
       full.internal += audit.internal;
-      full.left_domain_mass += totals.left_mass;
-      full.left_domain_energy += totals.left_energy;
+      full.left_domain_mass += totals.left.mass;
+      full.left_domain_energy += totals.left.energy;
+      full.dropped_mass += totals.dropped.mass;
+      full.dropped_energy += totals.dropped.energy;
       full.failure_loss += totals.failure_loss;
       full.plastic_dissipation += totals.plastic_dissipation;
       full.viscous_dissipation += totals.viscous_dissipation;
       for (int c = 0; c < 3; ++c) {
         full.momentum[c] += audit.momentum[c];
         full.angular_momentum[c] += audit.angular_momentum[c];
-        full.left_domain_momentum[c] += totals.left_momentum[c];
+        full.left_domain_momentum[c] += totals.left.momentum[c];
+        full.dropped_momentum[c] += totals.dropped.momentum[c];
+        full.dropped_angular_momentum[c] += totals.dropped_angular_momentum[c];
       }
       full.maximum_speed = std::max(full.maximum_speed, totals.maximum_speed);
       full.maximum_speed_ever = std::max(full.maximum_speed_ever, totals.maximum_speed_ever);
@@ -1559,8 +1568,8 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     full.contact_dissipation = state.ledger.contact_dissipation;
     full.prescribed_work = state.ledger.prescribed_work;
     full.initial_total = state.ledger.initial_total;
-    full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.friction_dissipation +
-                 full.contact_dissipation +
+    full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.dropped_energy +
+                 full.friction_dissipation + full.contact_dissipation +
                  full.transfer_dissipation - full.external_work - full.prescribed_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
@@ -1605,10 +1614,12 @@ ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id id, o
     ogive_body_result full{};
     full.particles = body.particles;
     full.failed_particles = totals.failed_particles;
-    full.left_domain = totals.left_particles;
+    full.left_domain = totals.left.particles;
+    full.dropped_particles = totals.dropped.particles;
+    full.dropped_mass = totals.dropped.mass;
     full.mass = audit.mass;
     full.failed_mass = totals.failed_mass;
-    full.left_domain_mass = totals.left_mass;
+    full.left_domain_mass = totals.left.mass;
     full.first_failure_time = totals.first_failure_time;
     full.failure_loss = totals.failure_loss;
     full.kinetic = audit.kinetic;
@@ -1737,7 +1748,11 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
       }
     });
     if (field_name == "velocity" && lagrangian) take_velocities(world->model, world->state, world->workspace, id.index);
-    if (moves_energy) world->state.energy_watch.from_host += total_energy(world->model, world->state) - energy_before;
+    if (moves_energy) {
+      world->state.energy_watch.from_host += total_energy(world->model, world->state) - energy_before;
+      // What the host gives is no exchange; the memory of the beginning begins anew.
+      if (!world->state.stop.exchange.begun) world->state.stop.exchange = {};
+    }
     if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
     if (field_name == "velocity") {
       // The next step must be safe for the new speed as well.

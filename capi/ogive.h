@@ -202,6 +202,21 @@ typedef struct ogive_numerics_def {
                                Default 0.01 */
   double energy_limit;      /* [-] growth at which a step fails with OGIVE_ERROR_NUMERICAL; the message names the time, the
                                particle with the most energy and the probable cause. > 0, infinity allowed. Default 1 */
+  int32_t drop_debris;      /* 1: fragments that can meet nothing any more are removed and booked (dropped_* of ledger and body
+                               results); looked for at every 50th step, the number of steps alone decides. Default 0.
+                               All that lies nearer than 4 cells together is one fragment. It is dropped where it has at
+                               most 1 % of the mass that each of its bodies was given and is not the largest left of one,
+                               where no load or force acts on it, and where it keeps 4 cells from everything until it has
+                               left the domain by a free face: it is a box that moves with any velocity that differs from
+                               its centre's by at most the largest such difference of its particles now. Everything: the
+                               boxes of other fragments and bodies, with any of the velocities of their particles (of
+                               rigid bodies: any that their motion can have), of those that they may meet, and as a wall
+                               or mirror would turn these round; walls; symmetry and fixed faces (2 cells); regions of
+                               clamps and prescribed velocities that hold its bodies. Never where gravity acts, never of
+                               rigid and total Lagrangian bodies or those whose surface makes contact; not with
+                               OGIVE_SPACE_AXISYMMETRIC. What others do after later collisions among themselves is not
+                               foreseen beyond that */
+  int32_t reserved2;
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
 /* Before ogive_world_prepare; another call replaces them. */
@@ -511,15 +526,24 @@ OGIVE_API ogive_status ogive_wall_add(ogive_world* world, const ogive_wall_def* 
 
 /* ------------------------------------------------------------------------------------------------------ stop conditions */
 
-/* Besides the end time. The body's speed is that of its centre of mass. */
+/* Besides the end time, looked at when the world is prepared and at every tenth step. The body's speed is that of its centre of
+ * mass. */
 typedef struct ogive_stop_def {
   uint32_t struct_size;
-  ogive_body_id body;        /* the projectile; -1: no stop condition. Default -1 */
+  ogive_body_id body;        /* the projectile; -1: no stop condition on a body. Default -1 */
   double settle_window;      /* [T] > 0: settled when, after the body has lost more than settle_tolerance of its speed, its
                                 speed changes by less than settle_tolerance during this time. 0: not tested. Default 0 */
   double settle_tolerance;   /* [L/T] > 0 */
   int32_t stop_when_stopped; /* 1: also when the velocity along the initial direction has fallen to zero. Default 1 */
   int32_t stop_when_out;     /* 1: also when all its particles have left the domain. Default 1 */
+  /* Of the whole world, with or without a body: the energy exchange has ended when, after it has begun, for so long neither the
+   * kinetic energy of any body nor the internal energy of all nor what was dissipated so far (plastic, viscous, failure, friction,
+   * transfer, contact) has changed by more than the tolerance. It has begun when internal or dissipated energy has changed by
+   * more since the beginning; where no load, gravity or prescribed motion has done work also when a kinetic energy has, or when
+   * bodies have pushed on each other. What only flies never ends a run. Removed particles are no change. */
+  double exchange_window;    /* [T] >= 0; 0: not tested. Default 0 */
+  double exchange_tolerance; /* [-] > 0, < 1: part of the initial total energy with what the host put in by setting fields;
+                                never met where that is 0. Default 0.001 */
 } ogive_stop_def;
 OGIVE_API void ogive_stop_def_init(ogive_stop_def* def, size_t size);
 /* Before ogive_world_prepare; another call replaces it. */
@@ -528,7 +552,8 @@ enum {
   OGIVE_STOP_NONE = 0,    /* still running */
   OGIVE_STOP_SETTLED = 1,
   OGIVE_STOP_STOPPED = 2,
-  OGIVE_STOP_OUT = 3
+  OGIVE_STOP_OUT = 3,
+  OGIVE_STOP_EXCHANGE_ENDED = 4
 };
 
 /* -------------------------------------------------------------------------------------------------------------- running */
@@ -583,7 +608,7 @@ OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_prog
 /* ------------------------------------------------------------------------------------------------------------ results */
 
 /* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
- *   total    = kinetic + internal + failure_loss + left_domain_energy + friction_dissipation
+ *   total    = kinetic + internal + failure_loss + left_domain_energy + dropped_energy + friction_dissipation
  *            + transfer_dissipation + contact_dissipation - external_work - prescribed_work
  *   residual = total - initial_total; what no term accounts for
  * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
@@ -629,6 +654,10 @@ typedef struct ogive_ledger {
   double contact_dissipation;  /* kinetic energy that contact took, beside friction, where total Lagrangian bodies meet each other,
                                   rigid bodies or walls: the impact of the layer of nodes that meets. There it is exactly
                                   known; what contact takes from other bodies is in the residual */
+  double dropped_mass;         /* [M] of debris (drop_debris of ogive_numerics_def), when it was dropped; in no other field */
+  double dropped_momentum[3];  /* [M L/T] */
+  double dropped_angular_momentum[3]; /* [M L2/T] about the origin, with that of affine velocities */
+  double dropped_energy;       /* kinetic + internal */
 } ogive_ledger;
 /* After ogive_world_prepare; a pass over all particles. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);
@@ -668,6 +697,8 @@ typedef struct ogive_body_result {
   double angular_velocity[3];   /* [1/T] of a rigid body, otherwise 0 */
   int32_t formulation;          /* OGIVE_FORMULATION_* now: a total Lagrangian body that was too distorted is deformable */
   int32_t reserved1;
+  int64_t dropped_particles;    /* dropped as debris; not among those that left the domain */
+  double dropped_mass;          /* [M] */
 } ogive_body_result;
 /* After ogive_world_prepare; a pass over the particles of the body. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_body_result_get(const ogive_world* world, ogive_body_id body, ogive_body_result* result);

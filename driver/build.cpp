@@ -96,6 +96,7 @@ class Builder {
     assign(def.xpic_order, scene_.numerics.xpic_order);
     assign(def.energy_warning, scene_.numerics.energy_warning);
     assign(def.energy_limit, scene_.numerics.energy_limit);
+    assign(def.drop_debris, scene_.numerics.drop_debris);
     require(ogive_world_set_numerics(world_, &def), "numerics");
   }
 
@@ -265,6 +266,8 @@ class Builder {
     assign(def.settle_tolerance, stop.settle_tolerance);
     assign(def.stop_when_stopped, stop.stop_when_stopped);
     assign(def.stop_when_out, stop.stop_when_out);
+    assign(def.exchange_window, stop.exchange_window);
+    assign(def.exchange_tolerance, stop.exchange_tolerance);
     require(ogive_world_set_stop(world_, &def), "stop");
   }
 

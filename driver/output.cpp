@@ -111,12 +111,17 @@ void add_ledger(Row& row, const ogive_ledger& ledger) {
   row.add("maximum_speed_ever", ledger.maximum_speed_ever);
   row.add("angular_momentum", ledger.angular_momentum);
   row.add("contact_couple", ledger.contact_couple);
+  row.add("dropped_mass", ledger.dropped_mass);
+  row.add("dropped_momentum", ledger.dropped_momentum);
+  row.add("dropped_angular_momentum", ledger.dropped_angular_momentum);
+  row.add("dropped_energy", ledger.dropped_energy);
 }
 
 void add_body(Row& row, const std::string& name, const ogive_body_result& body) {
   row.add(name + ".particles", body.particles);
   row.add(name + ".failed_particles", body.failed_particles);
   row.add(name + ".left_domain", body.left_domain);
+  row.add(name + ".dropped_particles", body.dropped_particles);
   row.add(name + ".mass", body.mass);
   row.add(name + ".momentum", body.momentum);
   row.add(name + ".velocity", body.velocity);
@@ -161,6 +166,8 @@ Json body_json(const ogive_body_result& body) {
   json["failure_loss"] = body.failure_loss;
   json["left_domain"] = body.left_domain;
   json["left_domain_mass"] = body.left_domain_mass;
+  json["dropped_particles"] = body.dropped_particles;
+  json["dropped_mass"] = body.dropped_mass;
   json["maximum_plastic_strain"] = body.maximum_plastic_strain;
   json["maximum_temperature"] = body.maximum_temperature;
   json["angular_momentum"] = json_of(body.angular_momentum);
@@ -176,6 +183,7 @@ Json energy_json(const ogive_ledger& ledger) {
   json["viscous_dissipation"] = ledger.viscous_dissipation;
   json["failure_loss"] = ledger.failure_loss;
   json["left_domain_energy"] = ledger.left_domain_energy;
+  json["dropped_energy"] = ledger.dropped_energy;
   json["friction_dissipation"] = ledger.friction_dissipation;
   json["transfer_dissipation"] = ledger.transfer_dissipation;
   json["contact_work"] = ledger.contact_work;
@@ -368,8 +376,10 @@ void Output::write_summary(ogive_world* world, const RunFacts& facts) const {
   }
   json["mass"] = ledger.mass;
   json["left_domain_mass"] = ledger.left_domain_mass;
+  json["dropped_mass"] = ledger.dropped_mass;
   json["momentum"] = json_of(ledger.momentum);
   json["left_domain_momentum"] = json_of(ledger.left_domain_momentum);
+  json["dropped_momentum"] = json_of(ledger.dropped_momentum);
   json["boundary_impulse"] = json_of(ledger.boundary_impulse);
   json["external_impulse"] = json_of(ledger.external_impulse);
   json["energy"] = energy_json(ledger);

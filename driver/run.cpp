@@ -66,6 +66,8 @@ const char* stop_name(int32_t stop) {
       return "stopped";
     case OGIVE_STOP_OUT:
       return "out";
+    case OGIVE_STOP_EXCHANGE_ENDED:
+      return "exchange_ended";
     default:
       return "";
   }

@@ -151,7 +151,7 @@ NumericsScene read_numerics(const Section& root) {
   NumericsScene numerics;
   const auto section = root.optional_table(
       "numerics", Names{"shape_function", "time_step_factor", "maximum_time_step", "threads", "gravity", "transfer",
-                        "update_order", "pic_fraction", "xpic_order", "energy_warning", "energy_limit"});
+                        "update_order", "pic_fraction", "xpic_order", "energy_warning", "energy_limit", "drop_debris"});
   if (!section) return numerics;
   numerics.shape_function = section->optional_choice(
       "shape_function", {{"linear", OGIVE_SHAPE_LINEAR},
@@ -162,6 +162,7 @@ NumericsScene read_numerics(const Section& root) {
   numerics.maximum_time_step = section->optional_number("maximum_time_step", kPositive);
   numerics.energy_warning = section->optional_number("energy_warning", kPositive);
   numerics.energy_limit = section->optional_number("energy_limit", kPositive);
+  numerics.drop_debris = section->optional_flag("drop_debris");
   if (const auto threads = section->optional_integer("threads", 0, 1024)) {
     numerics.threads = static_cast<int32_t>(*threads);
   }
@@ -571,7 +572,8 @@ std::vector<ClampScene> read_clamps(const Section& root, const Names& bodies) {
 
 StopScene read_stop(const Section& root, const Names& bodies) {
   const Names conditions = {"settle_window", "settle_tolerance", "stop_when_stopped", "stop_when_out"};
-  const Section section = root.table("stop", Names{"time", "body"} + conditions + Names{"max_steps"});
+  const Section section =
+      root.table("stop", Names{"time", "body"} + conditions + Names{"exchange_window", "exchange_tolerance", "max_steps"});
   StopScene stop;
   stop.time = section.number("time", kPositive);
   stop.body = section.optional_text("body");
@@ -586,6 +588,12 @@ StopScene read_stop(const Section& root, const Names& bodies) {
   }
   stop.stop_when_stopped = section.optional_flag("stop_when_stopped");
   stop.stop_when_out = section.optional_flag("stop_when_out");
+  stop.exchange_window = section.optional_number("exchange_window", kNotNegative);
+  const Range part = {[](double value) { return value > 0 && value < 1; }, "> 0 and < 1"};
+  stop.exchange_tolerance = section.optional_number("exchange_tolerance", part);
+  if (stop.exchange_tolerance && !stop.exchange_window) {
+    section.refuse("exchange_tolerance", "needs stop.exchange_window, the time during which it must be kept");
+  }
   stop.max_steps = section.optional_integer("max_steps", 0, int64_t{1} << 52).value_or(0);
   return stop;
 }

@@ -40,6 +40,7 @@ struct NumericsScene {
   std::optional<double> pic_fraction;
   std::optional<int32_t> xpic_order;
   std::optional<double> energy_warning, energy_limit;
+  std::optional<bool> drop_debris;
 
   bool operator==(const NumericsScene&) const = default;
 };
@@ -162,6 +163,7 @@ struct StopScene {
   std::optional<std::string> body;
   std::optional<double> settle_window, settle_tolerance;
   std::optional<bool> stop_when_stopped, stop_when_out;
+  std::optional<double> exchange_window, exchange_tolerance;
   int64_t max_steps = 0;  // 0: no limit
 
   bool operator==(const StopScene&) const = default;

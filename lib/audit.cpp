@@ -1,4 +1,4 @@
-// Sums over particles and the stop condition.
+// Sums over particles and the stop conditions.
 #include "audit.hpp"
 
 #include <algorithm>
@@ -12,6 +12,16 @@ double affine_energy(const BodyState& body, std::int64_t p, double cell_size) {
   double squared = 0;
   for (int c = 0; c < affine_size; ++c) squared += body.affine[affine_size * p + c] * body.affine[affine_size * p + c];
   return 0.125 * body.position[4 * p + 3] * cell_size * cell_size * squared;
+}
+
+Vector3 particle_angular_momentum(const BodyState& body, std::int64_t p, double cell_size) {
+  const double* x = &body.position[4 * p];
+  const double* v = &body.velocity[4 * p];
+  Vector3 sum = times(x[3], cross({x[0], x[1], x[2]}, {v[0], v[1], v[2]}));
+  if (body.affine.empty()) return sum;
+  const double* C = &body.affine[affine_size * p];
+  add(sum, times(0.25 * cell_size * cell_size * x[3], {C[3 + 2] - C[6 + 1], C[6 + 0] - C[0 + 2], C[0 + 1] - C[3 + 0]}));
+  return sum;
 }
 
 BodyAudit audit_body(const Model& model, const State& state, int index) {
@@ -94,9 +104,23 @@ double total_energy(const Model& model, const State& state) {
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
     const BodyAudit audit = audit_body(model, state, b);
     const BodyTotals& totals = state.bodies[b].totals;
-    total += audit.kinetic + audit.internal + totals.failure_loss + totals.left_energy;
+    total += audit.kinetic + audit.internal + totals.failure_loss + totals.left.energy + totals.dropped.energy;
   }
   return total;
+}
+
+double dissipated_energy(const State& state) {
+  double sum = state.ledger.friction_dissipation + state.ledger.transfer_dissipation + state.ledger.contact_dissipation;
+  for (const BodyState& body : state.bodies)
+    sum += body.totals.plastic_dissipation + body.totals.viscous_dissipation + body.totals.failure_loss;
+  return sum;
+}
+
+void forget_departed(State& state, int body, double kinetic, double internal) {
+  ExchangeState& memory = state.stop.exchange;
+  if (memory.kinetic.empty()) return;
+  memory.kinetic[static_cast<std::size_t>(body)] -= kinetic;
+  memory.internal -= internal;
 }
 
 Vector3 body_momentum(const BodyState& body) {
@@ -107,9 +131,11 @@ Vector3 body_momentum(const BodyState& body) {
   return momentum;
 }
 
-void check_stop(const Model& model, State& state) {
+namespace {
+
+void check_body(const Model& model, State& state) {
   const Stop& stop = model.stop;
-  if (stop.body < 0 || state.stop.reason != 0) return;
+  if (stop.body < 0) return;
   const BodyState& body = state.bodies[stop.body];
   if (body.particles == 0) {
     if (stop.when_out) state.stop.reason = 3;
@@ -145,6 +171,51 @@ void check_stop(const Model& model, State& state) {
   } else if (state.time - state.stop.reference_time >= stop.settle_window) {
     state.stop.reason = 1;
   }
+}
+
+// Before anything has happened the memory is of the beginning, so that a slow exchange adds up; afterwards it moves to the present
+// whenever an energy has left the band around it.
+void check_exchange(const Model& model, State& state) {
+  const Stop& stop = model.stop;
+  const double band = stop.exchange_tolerance * std::abs(state.ledger.initial_total + state.energy_watch.from_host);
+  if (!(stop.exchange_window > 0) || !(band > 0)) return;
+  ExchangeState& memory = state.stop.exchange;
+  ExchangeState now;
+  now.time = state.time;
+  now.dissipated = dissipated_energy(state);
+  for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
+    const BodyAudit audit = audit_body(model, state, b);
+    now.internal += audit.internal;
+    now.kinetic.push_back(audit.kinetic);
+  }
+  if (memory.kinetic.empty()) {
+    memory = now;
+    memory.dissipated = 0;
+  }
+  const auto left_band = [&](double before, double after) { return std::abs(after - before) > band; };
+  const bool stored = left_band(memory.internal, now.internal) || left_band(memory.dissipated, now.dissipated);
+  bool moved = false;
+  for (std::size_t b = 0; b < now.kinetic.size(); ++b) moved = moved || left_band(memory.kinetic[b], now.kinetic[b]);
+
+  if (memory.begun && !stored && !moved) {
+    if (state.time - memory.time >= stop.exchange_window) state.stop.reason = 4;
+    return;
+  }
+  // Motion and contact tell of an exchange only where nothing outside works: gravity moves what still flies, and presses
+  // together what lies.
+  const bool driven = state.ledger.external_work != 0 || state.ledger.prescribed_work != 0;
+  bool pushed = false;
+  for (const PairTotals& pair : state.pairs) pushed = pushed || pair.impulse != Vector3{};
+  now.begun = memory.begun || stored || (!driven && (pushed || moved));
+  if (now.begun) memory = std::move(now);
+}
+
+}  // namespace
+
+void check_stop(const Model& model, State& state) {
+  if (state.stop.reason != 0) return;
+  check_body(model, state);
+  if (state.stop.reason == 0) check_exchange(model, state);
 }
 
 }  // namespace ogive

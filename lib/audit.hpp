@@ -19,14 +19,23 @@ BodyAudit audit_body(const Model& model, const State& state, int body);
 // Kinetic energy of a particle's affine velocity field, m h^2/8 |C|^2.
 double affine_energy(const BodyState& body, std::int64_t particle, double cell_size);
 
-// kinetic + internal + failure loss + energy that left + friction heat + transfer dissipation - external work
+// kinetic + internal + failure loss + energy that left or was dropped + friction heat + transfer dissipation - external work
 // - work of prescribed motion, of all bodies.
 double total_energy(const Model& model, const State& state);
 
 // Momentum of the centre of mass alone, for the stop condition.
 Vector3 body_momentum(const BodyState& body);
 
-// Renews the stop condition's memory and sets state.stop.reason.
+// What was dissipated so far, in all bodies and between them: plastic, viscous and failure, friction, transfer and contact.
+double dissipated_energy(const State& state);
+
+// Angular momentum of a particle about the origin, with that of its affine velocity field.
+Vector3 particle_angular_momentum(const BodyState& body, std::int64_t particle, double cell_size);
+
+// Takes what removed particles of a body had out of the memory of the stop conditions: their departure is no exchange.
+void forget_departed(State& state, int body, double kinetic, double internal);
+
+// Renews the memory of the stop conditions and sets state.stop.reason.
 void check_stop(const Model& model, State& state);
 
 }  // namespace ogive

@@ -174,6 +174,9 @@ void require_sound(const Model& model, const State& state) {
   require_finite("state/time", {state.time, state.last_time_step, state.stable_time_step});
   if (state.time < 0 || state.last_time_step < 0 || state.steps < 0 || state.particle_steps < 0)
     throw Error(ErrorKind::Format, "state/time: times and counts must be >= 0");
+  const ExchangeState& exchange = state.stop.exchange;
+  require_finite("state/stop/exchange", {exchange.time, exchange.internal, exchange.dissipated});
+  for (const double kinetic : exchange.kinetic) require_finite("state/stop/exchange/kinetic", {kinetic});
   const Ledger& ledger = state.ledger;
   require_finite("state/ledger", {ledger.friction_dissipation, ledger.transfer_dissipation, ledger.contact_work,
                                   ledger.boundary_work, ledger.external_work, ledger.prescribed_work, ledger.initial_total});
@@ -195,9 +198,12 @@ void require_sound(const Model& model, const State& state) {
     const BodyState& body = state.bodies[b];
     const std::string at = "state/bodies/" + std::to_string(b) + "/";
     const BodyTotals& t = body.totals;
-    require_finite(at + "totals", {t.failed_mass, t.first_failure_time, t.failure_loss, t.left_mass, t.left_energy,
-                                   t.plastic_dissipation, t.viscous_dissipation, t.maximum_speed, t.maximum_speed_ever});
-    require_finite(at + "left_momentum", t.left_momentum);
+    require_finite(at + "totals", {t.failed_mass, t.first_failure_time, t.failure_loss, t.left.mass, t.left.energy, t.dropped.mass,
+                                   t.dropped.energy, t.plastic_dissipation, t.viscous_dissipation, t.maximum_speed,
+                                   t.maximum_speed_ever});
+    require_finite(at + "left_momentum", t.left.momentum);
+    require_finite(at + "dropped_momentum", t.dropped.momentum);
+    require_finite(at + "dropped_angular_momentum", t.dropped_angular_momentum);
     require_finite(at + "contact_force", t.contact_force);
     require_finite(at + "initial_velocity", t.initial_velocity);
     if (model.bodies[b].rigid()) {

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "audit.hpp"
+#include "block_table.hpp"
 #include "breakdown.hpp"
 #include "error.hpp"
 #include "parallel.hpp"
@@ -18,55 +19,6 @@ namespace {
 // Cells that a particle may drift out of its group's cells. Half a cell is what the tile holds; the rest keeps a particle
 // that sits exactly there from being rounded to a node outside.
 constexpr double drift_limit = 0.49;
-
-// Block coordinates and field (or nothing) in one key; Model::validate_grid keeps blocks within +-32000.
-std::uint64_t block_key(const std::array<std::int32_t, 3>& block, std::int32_t field) {
-  const auto part = [](std::int32_t i) { return static_cast<std::uint64_t>(i + 32768) & 0xffff; };
-  return part(block[2]) << 48 | part(block[1]) << 32 | part(block[0]) << 16 | static_cast<std::uint64_t>(field);
-}
-
-// Open-addressing table from block keys to indices; much faster than std::unordered_map here and freed in one go.
-class BlockTable {
- public:
-  explicit BlockTable(std::size_t expected) {
-    std::size_t size = 64;
-    while (size < 2 * expected) size *= 2;
-    entries_.assign(size, {empty, -1});
-  }
-  // Index of the key, `next` if it is new.
-  std::int32_t insert(std::uint64_t key, std::int32_t next) {
-    if (2 * (used_ + 1) > entries_.size()) grow();
-    Entry& entry = entries_[place(key)];
-    if (entry.key == empty) {
-      entry = {key, next};
-      ++used_;
-    }
-    return entry.index;
-  }
-  std::int32_t find(std::uint64_t key) const { return entries_[place(key)].index; }
-
- private:
-  struct Entry {
-    std::uint64_t key;
-    std::int32_t index;
-  };
-  static constexpr std::uint64_t empty = ~std::uint64_t{0};
-  std::size_t place(std::uint64_t key) const {
-    std::uint64_t hash = key * 0x9e3779b97f4a7c15ull;
-    hash ^= hash >> 32;
-    std::size_t i = hash & (entries_.size() - 1);
-    while (entries_[i].key != empty && entries_[i].key != key) i = (i + 1) & (entries_.size() - 1);
-    return i;
-  }
-  void grow() {
-    std::vector<Entry> old(2 * entries_.size(), {empty, -1});
-    old.swap(entries_);
-    for (const Entry& entry : old)
-      if (entry.key != empty) entries_[place(entry.key)] = entry;
-  }
-  std::vector<Entry> entries_;
-  std::size_t used_ = 0;
-};
 
 std::int32_t floor_div4(std::int32_t i) { return i >> 2; }
 
@@ -95,15 +47,23 @@ bool has_left(const Model& model, const State& state, int body, std::int64_t par
   return false;
 }
 
-void book_departure(const Material& material, double cell_size, const BodyState& body, std::int64_t p, BodyTotals& totals) {
+// What particles that are removed take along.
+struct Removal {
+  double kinetic = 0, internal = 0;
+};
+
+void book_departure(const Model& model, const BodyState& body, int index, std::int64_t p, Departed& departed, Removal& removal) {
   const double* v = &body.velocity[4 * p];
   const double mass = body.position[4 * p + 3];
-  ++totals.left_particles;
-  totals.left_mass += mass;
-  for (int axis = 0; axis < 3; ++axis) totals.left_momentum[axis] += mass * v[axis];
-  totals.left_energy +=
-      0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + affine_energy(body, p, cell_size) +
-      mass / material.density * body.energy[p];
+  const double kinetic =
+      0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + affine_energy(body, p, model.grid.cell_size);
+  const double internal = mass / model.material_of(index).density * body.energy[p];
+  ++departed.particles;
+  departed.mass += mass;
+  for (int axis = 0; axis < 3; ++axis) departed.momentum[axis] += mass * v[axis];
+  departed.energy += kinetic + internal;
+  removal.kinetic += kinetic;
+  removal.internal += internal;
 }
 
 // Takes all the memory that reorder needs and changes no value: should there be too little, the body is as it was. Capacity
@@ -185,6 +145,32 @@ void reorder(BodyState& body, const AlignedVector<std::int32_t>& source, Aligned
   whole(body.loads, 1);
 }
 
+// Gives a body its particles in the order of `source` and in `groups`. Where memory cannot be had it is as it was.
+void take_order(BodyState& body, std::vector<Group>& groups, const AlignedVector<std::int32_t>& source, std::int64_t particles,
+                const BodyTotals& totals, const Workspace& workspace) {
+  AlignedVector<double> ring(static_cast<std::size_t>(4 * ring_length(source)));
+  reserve_for(body, source.size());
+
+  // From here on nothing fails.
+  reorder(body, source, ring, workspace);
+  body.groups.swap(groups);
+  body.particles = particles;
+  body.padded = static_cast<std::int64_t>(source.size());
+  body.totals = totals;
+  // The padding moves like the particle that it repeats but weighs nothing.
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p) {
+      body.position[4 * p + 3] = 0;
+      body.number[p] = -1;
+    }
+}
+
+// Old places of a group's padding, which repeats its last particle.
+void pad_source(const Group& group, AlignedVector<std::int32_t>& source) {
+  for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p)
+    source[p] = source[group.begin + group.count - 1];
+}
+
 void bin_body(const Model& model, State& state, Workspace& workspace, int index) {
   BodyState& body = workspace.particles_of(state, index);
   const Grid& grid = model.grid;
@@ -196,6 +182,7 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   bin.reserve(body.particles);
   std::vector<Group> groups;
   BodyTotals totals = body.totals;
+  Removal removal;
   BlockTable table(body.groups.size() + 64);
   std::uint64_t last_key = ~std::uint64_t{0};
   std::int32_t last_group = -1;
@@ -203,7 +190,7 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
     const double* x = &body.position[4 * p];
     if (has_left(model, state, index, p)) {
       // A total Lagrangian body stays whole: what lies outside is only out of reach of contact.
-      if (!state.bodies[index].lagrangian) book_departure(model.material_of(index), grid.cell_size, body, p, totals);
+      if (!state.bodies[index].lagrangian) book_departure(model, body, index, p, totals.left, removal);
       return;
     }
     std::array<std::int32_t, 3> cell, block;
@@ -267,28 +254,13 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   }
   AlignedVector<std::int32_t> source(static_cast<std::size_t>(next), -1);
   for (std::size_t i = 0; i < place.size(); ++i) source[cursor[bin[i]]++] = place[i];
-  for (const Group& group : sorted)
-    for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p)
-      source[p] = source[group.begin + group.count - 1];
+  for (const Group& group : sorted) pad_source(group, source);
   const std::int64_t particles = static_cast<std::int64_t>(place.size());
   place = {};
   bin = {};
-  AlignedVector<double> ring(static_cast<std::size_t>(4 * ring_length(source)));
-  reserve_for(body, source.size());
-
-  // From here on nothing fails.
-  reorder(body, source, ring, workspace);
-  body.groups.swap(sorted);
-  body.particles = particles;
-  body.padded = next;
-  body.totals = totals;
-  // The padding moves like the particle that it repeats but weighs nothing.
-  for (const Group& group : body.groups)
-    for (std::int64_t p = group.begin + group.count; p < group.padded_end(); ++p) {
-      body.position[4 * p + 3] = 0;
-      body.number[p] = -1;
-    }
+  take_order(body, sorted, source, particles, totals, workspace);
   body.drifted = false;
+  forget_departed(state, index, removal.kinetic, removal.internal);
 }
 
 // Nodes at the symmetry and fixed faces. A slot's nodes lie at block * 4 + (0..3) from domain_min.
@@ -464,6 +436,40 @@ void bin_particles(const Model& model, State& state, Workspace& workspace, bool 
     bin_body(model, state, workspace, b);
     workspace.linked = false;
   }
+}
+
+void drop_groups(const Model& model, State& state, Workspace& workspace, int index, const std::vector<std::uint8_t>& dropped) {
+  BodyState& body = state.bodies[index];
+  BodyTotals totals = body.totals;
+  Removal removal;
+  std::vector<Group> kept;
+  std::int64_t particles = 0, padded = 0;
+  for (std::size_t g = 0; g < body.groups.size(); ++g) {
+    Group group = body.groups[g];
+    if (dropped[g]) {
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
+        book_departure(model, body, index, p, totals.dropped, removal);
+        add(totals.dropped_angular_momentum, particle_angular_momentum(body, p, model.grid.cell_size));
+      }
+      continue;
+    }
+    group.begin = padded;
+    particles += group.count;
+    padded = group.padded_end();
+    kept.push_back(group);
+  }
+  AlignedVector<std::int32_t> source(static_cast<std::size_t>(padded));
+  std::size_t next = 0;
+  for (std::size_t g = 0; g < body.groups.size(); ++g) {
+    if (dropped[g]) continue;
+    const Group& group = kept[next++];
+    for (std::int32_t i = 0; i < group.count; ++i)
+      source[static_cast<std::size_t>(group.begin + i)] = static_cast<std::int32_t>(body.groups[g].begin + i);
+    pad_source(group, source);
+  }
+  take_order(body, kept, source, particles, totals, workspace);
+  workspace.linked = false;
+  forget_departed(state, index, removal.kinetic, removal.internal);
 }
 
 void link_grid(const Model& model, const State& state, Workspace& workspace) {

@@ -192,6 +192,10 @@ struct Workspace {
 // left the domain and books them. Throws Error(Numerical) for a particle that is not a number or has crossed a mirror face.
 void bin_particles(const Model& model, State& state, Workspace& workspace, bool all);
 
+// Removes those of a body's groups that `dropped` marks and books what they were (drop_debris). The others keep the order of
+// their particles, so that their sums keep their bits.
+void drop_groups(const Model& model, State& state, Workspace& workspace, int body, const std::vector<std::uint8_t>& dropped);
+
 // Brings the copy of a total Lagrangian body to what its particles are now.
 void fill_copy(State& state, int body);
 

@@ -300,6 +300,14 @@ void Model::validate_wall(const Wall& wall) const {
   validate_contact(wall.rule, "wall ");
 }
 
+void Model::validate_stop(const Stop& conditions) const {
+  require_not_negative("settle_window", conditions.settle_window);
+  if (conditions.settle_window > 0) require_positive("settle_tolerance", conditions.settle_tolerance);
+  require_not_negative("exchange_window", conditions.exchange_window);
+  const double tolerance = conditions.exchange_tolerance;
+  require(tolerance > 0 && tolerance < 1, "exchange_tolerance", "> 0 and < 1", tolerance);
+}
+
 void Model::validate_distortion(const Body& body) const {
   require(body.distortion_limit > 1, "distortion_limit", "> 1 (infinity: none)", body.distortion_limit);
   require_choice("when_distorted", body.when_distorted, 2);
@@ -352,6 +360,9 @@ void Model::complete() {
             "at most " + std::to_string(most_particle_loads), count);
   }
   known(stop.body, "stop body", true);
+  if (numerics.drop_debris && grid.axisymmetric())
+    throw Error(ErrorKind::Argument,
+                "drop_debris: must be 0 in an axisymmetric model, where a ring that flies outwards is held by its hoop stress; got 1");
   validate_planar();
   validate_lagrangian();
 
@@ -426,6 +437,7 @@ void Model::exchange(Archive& a) {
     a.value("model/numerics/energy_warning", numerics.energy_warning);
     a.value("model/numerics/energy_limit", numerics.energy_limit);
   }
+  if (a.version() >= 4) a.value("model/numerics/drop_debris", numerics.drop_debris);
 
   const auto count = [&](const char* name, auto& list, std::int32_t limit) {
     std::int32_t n = static_cast<std::int32_t>(list.size());
@@ -557,6 +569,10 @@ void Model::exchange(Archive& a) {
   a.value("model/stop/settle_tolerance", stop.settle_tolerance);
   a.value("model/stop/when_stopped", stop.when_stopped);
   a.value("model/stop/when_out", stop.when_out);
+  if (a.version() >= 4) {
+    a.value("model/stop/exchange_window", stop.exchange_window);
+    a.value("model/stop/exchange_tolerance", stop.exchange_tolerance);
+  }
 
   if (a.loading()) {
     for (const Body& body : bodies) {
@@ -576,6 +592,7 @@ void Model::exchange(Archive& a) {
     for (const Load& load : loads) validate_load(load);
     validate_contact(contact, "contact ");
     for (const PairRule& pair : pairs) validate_contact(pair.rule, "contact pair ");
+    validate_stop(stop);
     const Grid as_saved = grid;
     grid.lay_in_plane();
     if (grid != as_saved) throw Error(ErrorKind::Format, "model/grid: a two-dimensional model must lie in its plane");

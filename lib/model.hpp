@@ -91,6 +91,7 @@ struct Numerics {
   UpdateOrder update_order = UpdateOrder::StressFirst;
   std::int32_t xpic_order = 2;
   double energy_warning = 0.01, energy_limit = 1.0;  // growth of the energy, see energy_watch.hpp
+  bool drop_debris = false;                          // see debris.hpp
 
   bool affine() const { return transfer == Transfer::AffineFlip || transfer == Transfer::Apic; }
   bool stress_first() const { return update_order == UpdateOrder::StressFirst; }
@@ -217,6 +218,7 @@ struct Stop {
   std::int32_t body = -1;
   double settle_window = 0, settle_tolerance = 0;
   bool when_stopped = true, when_out = true;
+  double exchange_window = 0, exchange_tolerance = 0.001;  // of the whole world
 
   bool operator==(const Stop&) const = default;
 };
@@ -255,6 +257,7 @@ struct Model {
   void validate_wall(const Wall& wall) const;
   void validate_motion(const std::vector<MotionKnot>& motion) const;
   void validate_distortion(const Body& body) const;
+  void validate_stop(const Stop& conditions) const;
   void complete();  // checks what needs the whole model and fills the derived values
 
   void exchange(Archive& archive);  // saves or loads every field

@@ -6,6 +6,7 @@
 
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
+#include "debris.hpp"
 #include "surface/meeting.hpp"
 #include "time_step.hpp"
 
@@ -149,6 +150,14 @@ std::string describe_plan(const Model& model, const State& state, const Workspac
   if (numerics.affine() && numerics.time_step_factor > lone_affine_particle_limit)
     line(text, "  caution: with affine velocities a lone particle is stable for factors below %.2f (no shear stiffness) to 0.73",
          lone_affine_particle_limit);
+  if (model.stop.exchange_window > 0)
+    line(text, "stop: when no energy has changed by more than %.3g %% of the initial total for %.6g, once some has",
+         100 * model.stop.exchange_tolerance, model.stop.exchange_window);
+  if (numerics.drop_debris)
+    line(text, "debris: parts of at most %.3g %% of their body that can meet nothing any more are dropped, looked for every %d steps",
+         100 * debris_share, static_cast<int>(debris_steps));
+  if (numerics.drop_debris && numerics.gravity != Vector3{})
+    line(text, "  caution: gravity acts, which brings all debris back; none is dropped");
   const std::int64_t bytes = state.memory_bytes() + workspace.memory_bytes();
   line(text, "memory: %.1f MB, %.0f bytes a particle with the grid", 1e-6 * static_cast<double>(bytes),
        static_cast<double>(bytes) / static_cast<double>(state.particle_count() > 0 ? state.particle_count() : 1));

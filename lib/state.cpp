@@ -184,6 +184,21 @@ static void exchange_reference(State& state, std::size_t b, Archive& a) {
                                          std::to_string(n));
 }
 
+// Memory of the condition that the energy exchange has ended.
+static void exchange_energies(State& state, Archive& a) {
+  ExchangeState& memory = state.stop.exchange;
+  const std::string at = "state/stop/exchange/";
+  a.value(at + "time", memory.time);
+  a.value(at + "internal", memory.internal);
+  a.value(at + "dissipated", memory.dissipated);
+  a.value(at + "begun", memory.begun);
+  const std::int64_t bodies = static_cast<std::int64_t>(state.bodies.size());
+  a.resizable(at + "kinetic", memory.kinetic, bodies);
+  if (!memory.kinetic.empty() && static_cast<std::int64_t>(memory.kinetic.size()) != bodies)
+    throw Error(ErrorKind::Format, at + "kinetic: expected none or " + std::to_string(bodies) + " values, found " +
+                                       std::to_string(memory.kinetic.size()));
+}
+
 void State::exchange(const Model& model, Archive& a) {
   if (a.loading()) bodies.assign(model.bodies.size(), BodyState{});
   copies.resize(bodies.size());
@@ -196,6 +211,7 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/stop/reference_speed", stop.reference_speed);
   a.value("state/stop/slowed", stop.slowed);
   a.value("state/stop/reason", stop.reason);
+  if (a.version() >= 4) exchange_energies(*this, a);
   a.value("state/ledger/friction_dissipation", ledger.friction_dissipation);
   a.value("state/ledger/transfer_dissipation", ledger.transfer_dissipation);
   a.value("state/ledger/contact_work", ledger.contact_work);
@@ -240,10 +256,17 @@ void State::exchange(const Model& model, Archive& a) {
     a.value(at + "failed_mass", t.failed_mass);
     a.value(at + "first_failure_time", t.first_failure_time);
     a.value(at + "failure_loss", t.failure_loss);
-    a.value(at + "left_particles", t.left_particles);
-    a.value(at + "left_mass", t.left_mass);
-    a.value(at + "left_energy", t.left_energy);
-    a.value(at + "left_momentum", t.left_momentum);
+    const auto departed = [&](const std::string& how, Departed& d) {
+      a.value(at + how + "_particles", d.particles);
+      a.value(at + how + "_mass", d.mass);
+      a.value(at + how + "_energy", d.energy);
+      a.value(at + how + "_momentum", d.momentum);
+    };
+    departed("left", t.left);
+    if (a.version() >= 4) {
+      departed("dropped", t.dropped);
+      a.value(at + "dropped_angular_momentum", t.dropped_angular_momentum);
+    }
     a.value(at + "plastic_dissipation", t.plastic_dissipation);
     a.value(at + "viscous_dissipation", t.viscous_dissipation);
     a.value(at + "contact_force", t.contact_force);

@@ -35,12 +35,19 @@ struct Group {
   std::int64_t padded_end() const { return begin + (count + group_padding - 1) / group_padding * group_padding; }
 };
 
+// What removed particles were.
+struct Departed {
+  std::int64_t particles = 0;
+  double mass = 0, energy = 0;  // kinetic and internal
+  Vector3 momentum{};
+};
+
 // Running sums of one body.
 struct BodyTotals {
-  std::int64_t failed_particles = 0, left_particles = 0;
+  std::int64_t failed_particles = 0;
   double failed_mass = 0, first_failure_time = -1, failure_loss = 0;
-  double left_mass = 0, left_energy = 0;
-  Vector3 left_momentum{};
+  Departed left, dropped;  // by free faces; as debris
+  Vector3 dropped_angular_momentum{};  // about the origin
   double plastic_dissipation = 0, viscous_dissipation = 0;
   Vector3 contact_force{};  // of the last step
   Vector3 initial_velocity{};
@@ -148,11 +155,20 @@ struct PairTotals {
   double friction_dissipation = 0, contact_work = 0;
 };
 
-// Memory of the stop condition.
+// Memory of the condition that the energy exchange has ended: energies since when none has changed by more than the tolerance,
+// before anything has happened those of the beginning.
+struct ExchangeState {
+  double time = 0, internal = 0, dissipated = 0;
+  std::vector<double> kinetic;  // by body; empty: not yet looked at
+  bool begun = false;
+};
+
+// Memory of the stop conditions.
 struct StopState {
   double reference_time = 0, reference_speed = 0;
   bool slowed = false;
   std::int32_t reason = 0;
+  ExchangeState exchange;
 };
 
 struct State {

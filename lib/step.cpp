@@ -14,6 +14,7 @@
 #include "breakdown.hpp"
 #include "contact/contact.hpp"
 #include "contact/occupied.hpp"
+#include "debris.hpp"
 #include "error.hpp"
 #include "lagrangian/lagrangian.hpp"
 #include "loads/loads.hpp"
@@ -51,6 +52,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   workspace.changing = false;
   retire_distorted(model, state, workspace);
   bin_particles(model, state, workspace, false);                 // particles that left their cells; the domain
+  if (debris_is_due(model, state)) drop_debris(model, state, workspace);
   if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
   allocate_load_sums(model, state, workspace);
 

@@ -18,6 +18,7 @@ from plot_common import Refused, Units, label, plt, run_main, summary_of
 # Columns of the ledger that make up the total, in the order of the legend; those that stay zero are left out.
 ENERGIES = [("total", "total", "black"), ("kinetic", "kinetic", "#1f77b4"), ("internal", "internal", "#d62728"),
             ("failure_loss", "removed at failure", "#9467bd"), ("left_domain_energy", "left the domain", "#8c564b"),
+            ("dropped_energy", "dropped as debris", "#17becf"),
             ("friction_dissipation", "friction", "#ff7f0e"), ("external_work", "external work", "#2ca02c"),
             ("residual", "residual", "#7f7f7f")]
 
@@ -60,7 +61,9 @@ def vectors(history, name):
 def momentum_error(history):
     """What neither faces, gravity nor guides gave, of the bodies' largest momentum or the largest impulse of a run."""
     given = vectors(history, "boundary_impulse") + vectors(history, "external_impulse")
-    momentum = vectors(history, "momentum") + vectors(history, "left_domain_momentum")
+    # Histories of older versions have no debris.
+    parts = [name for name in ("momentum", "left_domain_momentum", "dropped_momentum") if name + "_x" in history.columns]
+    momentum = sum(vectors(history, name) for name in parts)
     largest = sum(np.linalg.norm(vectors(history, f"{body}.momentum"), axis=1) for body in history.bodies()).max()
     return np.abs(momentum - momentum[0] - given).max() / max(largest, np.abs(given).max())
 

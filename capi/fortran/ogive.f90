@@ -114,10 +114,11 @@ contains
   end subroutine set_grid
 
   subroutine set_numerics(self, shape_function, time_step_factor, maximum_time_step, threads, gravity, transfer, &
-                          update_order, pic_fraction, xpic_order, status)
+                          update_order, pic_fraction, xpic_order, drop_debris, status)
     class(ogive_simulation), intent(inout) :: self
     integer(c_int32_t), intent(in), optional :: shape_function, threads, transfer, update_order, xpic_order
     real(c_double), intent(in), optional :: time_step_factor, maximum_time_step, gravity(3), pic_fraction
+    logical, intent(in), optional :: drop_debris
     integer(c_int32_t), intent(out), optional :: status
     type(ogive_numerics_def) :: def
     call ogive_numerics_def_init(def, c_sizeof(def))
@@ -130,6 +131,7 @@ contains
     if (present(update_order)) def%update_order = update_order
     if (present(pic_fraction)) def%pic_fraction = pic_fraction
     if (present(xpic_order)) def%xpic_order = xpic_order
+    if (present(drop_debris)) def%drop_debris = merge(1_c_int32_t, 0_c_int32_t, drop_debris)
     self%status = ogive_world_set_numerics(self%world, def)
     if (present(status)) status = self%status
   end subroutine set_numerics
@@ -210,19 +212,22 @@ contains
     if (present(status)) status = self%status
   end subroutine set_motion
 
-  subroutine set_stop(self, body, settle_window, settle_tolerance, stop_when_stopped, stop_when_out, status)
+  subroutine set_stop(self, body, settle_window, settle_tolerance, stop_when_stopped, stop_when_out, exchange_window, &
+                      exchange_tolerance, status)
     class(ogive_simulation), intent(inout) :: self
-    type(ogive_body_id), intent(in) :: body
-    real(c_double), intent(in), optional :: settle_window, settle_tolerance
+    type(ogive_body_id), intent(in), optional :: body
+    real(c_double), intent(in), optional :: settle_window, settle_tolerance, exchange_window, exchange_tolerance
     logical, intent(in), optional :: stop_when_stopped, stop_when_out
     integer(c_int32_t), intent(out), optional :: status
     type(ogive_stop_def) :: def
     call ogive_stop_def_init(def, c_sizeof(def))
-    def%body = body
+    if (present(body)) def%body = body
     if (present(settle_window)) def%settle_window = settle_window
     if (present(settle_tolerance)) def%settle_tolerance = settle_tolerance
     if (present(stop_when_stopped)) def%stop_when_stopped = merge(1_c_int32_t, 0_c_int32_t, stop_when_stopped)
     if (present(stop_when_out)) def%stop_when_out = merge(1_c_int32_t, 0_c_int32_t, stop_when_out)
+    if (present(exchange_window)) def%exchange_window = exchange_window
+    if (present(exchange_tolerance)) def%exchange_tolerance = exchange_tolerance
     self%status = ogive_world_set_stop(self%world, def)
     if (present(status)) status = self%status
   end subroutine set_stop

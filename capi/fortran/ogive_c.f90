@@ -86,6 +86,7 @@ module ogive_c
   integer(c_int32_t), parameter :: OGIVE_STOP_SETTLED = 1
   integer(c_int32_t), parameter :: OGIVE_STOP_STOPPED = 2
   integer(c_int32_t), parameter :: OGIVE_STOP_OUT = 3
+  integer(c_int32_t), parameter :: OGIVE_STOP_EXCHANGE_ENDED = 4
   integer(c_int32_t), parameter :: OGIVE_TYPE_FLOAT64 = 1
   integer(c_int32_t), parameter :: OGIVE_TYPE_INT32 = 2
   integer(c_int32_t), parameter :: OGIVE_TYPE_INT64 = 3
@@ -130,6 +131,8 @@ module ogive_c
     integer(c_int32_t) :: reserved1
     real(c_double) :: energy_warning
     real(c_double) :: energy_limit
+    integer(c_int32_t) :: drop_debris
+    integer(c_int32_t) :: reserved2
   end type ogive_numerics_def
 
   type, bind(C) :: ogive_clamp_def
@@ -242,6 +245,8 @@ module ogive_c
     real(c_double) :: settle_tolerance
     integer(c_int32_t) :: stop_when_stopped
     integer(c_int32_t) :: stop_when_out
+    real(c_double) :: exchange_window
+    real(c_double) :: exchange_tolerance
   end type ogive_stop_def
 
   type, bind(C) :: ogive_progress
@@ -289,6 +294,10 @@ module ogive_c
     real(c_double) :: energy_growth_time
     real(c_double) :: energy_warning_time
     real(c_double) :: contact_dissipation
+    real(c_double) :: dropped_mass
+    real(c_double) :: dropped_momentum(3)
+    real(c_double) :: dropped_angular_momentum(3)
+    real(c_double) :: dropped_energy
   end type ogive_ledger
 
   type, bind(C) :: ogive_body_result
@@ -318,6 +327,8 @@ module ogive_c
     real(c_double) :: angular_velocity(3)
     integer(c_int32_t) :: formulation
     integer(c_int32_t) :: reserved1
+    integer(c_int64_t) :: dropped_particles
+    real(c_double) :: dropped_mass
   end type ogive_body_result
 
   type, bind(C) :: ogive_load_result

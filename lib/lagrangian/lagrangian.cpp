@@ -219,10 +219,11 @@ void remove_departed(const Model& model, State& state, Workspace& workspace) {
             (grid.face[2 * axis + 1] == Face::Free && lower[axis] > grid.domain_max[axis]);
     if (!out) continue;
     const BodyAudit audit = audit_body(model, state, static_cast<int>(b));
-    body.totals.left_particles += body.particles;
-    body.totals.left_mass += audit.mass;
-    body.totals.left_energy += audit.kinetic + audit.internal;
-    add(body.totals.left_momentum, audit.momentum);
+    body.totals.left.particles += body.particles;
+    body.totals.left.mass += audit.mass;
+    body.totals.left.energy += audit.kinetic + audit.internal;
+    add(body.totals.left.momentum, audit.momentum);
+    forget_departed(state, static_cast<int>(b), audit.kinetic, audit.internal);
     BodyState gone;
     gone.totals = body.totals;
     gone.totals.maximum_speed = 0;

@@ -159,6 +159,7 @@ static void definitions(void) {
   WITH(numerics, maximum_time_step, 0, ogive_world_set_numerics(world, &numerics), "maximum_time_step");
   WITH(numerics, energy_warning, 0, ogive_world_set_numerics(world, &numerics), "energy_warning");
   WITH(numerics, energy_limit, NAN, ogive_world_set_numerics(world, &numerics), "energy_limit");
+  WITH(numerics, drop_debris, 2, ogive_world_set_numerics(world, &numerics), "drop_debris");
   WITH(numerics, gravity[0], NAN, ogive_world_set_numerics(world, &numerics), "gravity");
   WITH(numerics, threads, -1, ogive_world_set_numerics(world, &numerics), "threads");
   WITH(numerics, pic_fraction, 1.5, ogive_world_set_numerics(world, &numerics), "pic_fraction");
@@ -267,6 +268,9 @@ static void definitions(void) {
   BAD_SIZES(stop, ogive_world_set_stop(world, &stop));
   WITH(stop, settle_window, -1, ogive_world_set_stop(world, &stop), "settle_window");
   WITH(stop, settle_window, 1, ogive_world_set_stop(world, &stop), "settle_tolerance");
+  WITH(stop, exchange_window, -1, ogive_world_set_stop(world, &stop), "exchange_window");
+  WITH(stop, exchange_tolerance, 0, ogive_world_set_stop(world, &stop), "exchange_tolerance");
+  WITH(stop, exchange_tolerance, 1, ogive_world_set_stop(world, &stop), "exchange_tolerance");
   WITH(stop, body, below, ogive_world_set_stop(world, &stop), "stop body");
 
   /* Ids that are found to be unknown when the model is whole; then it can be mended. */

@@ -48,7 +48,8 @@ program fortran_test
   call check(a%status == OGIVE_ERROR_ARGUMENT .and. index(a%message(), "cell_size") == 1, "a refusal and its message")
   call a%set_grid(1.0_c_double, [-6.0_c_double, -4.0_c_double, -4.0_c_double], [6.0_c_double, 4.0_c_double, 4.0_c_double])
   call check(a%status == OGIVE_OK, "set_grid")
-  call a%set_numerics(time_step_factor=0.4_c_double, threads=1, gravity=[0.0_c_double, 0.0_c_double, -1.0_c_double])
+  call a%set_numerics(time_step_factor=0.4_c_double, threads=1, gravity=[0.0_c_double, 0.0_c_double, -1.0_c_double], &
+                       drop_debris=.true.)
   call a%set_contact(friction=0.1_c_double)
   call check(a%status == OGIVE_OK, "set_contact")
   def = material(7.85e-3_c_double)
@@ -75,6 +76,8 @@ program fortran_test
   call check(a%status == OGIVE_OK .and. load%index == 0, "add_load")
   call a%set_stop(left, stop_when_stopped=.false.)
   call check(a%status == OGIVE_OK, "set_stop")
+  call a%set_stop(exchange_window=0.1_c_double, exchange_tolerance=2.0_c_double)
+  call check(a%status == OGIVE_ERROR_ARGUMENT .and. index(a%message(), "exchange_tolerance") > 0, "a tolerance above 1")
   call a%prepare()
   call check(a%status == OGIVE_OK, "prepare")
   call check(index(a%plan(), 'body "left": 27 particles') > 0, "plan")

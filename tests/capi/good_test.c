@@ -42,13 +42,14 @@ static void definitions_begin_with_their_defaults(void) {
   ogive_load_def load;
   ogive_numerics_def_init(&numerics, sizeof numerics);
   CHECK(numerics.struct_size == sizeof numerics && numerics.time_step_factor == 0.5 && numerics.threads == 1);
+  CHECK(numerics.drop_debris == 0);
   CHECK(numerics.shape_function == OGIVE_SHAPE_QUADRATIC_BSPLINE && isinf(numerics.maximum_time_step));
   ogive_clamp_def_init(&clamp, sizeof clamp);
   CHECK(clamp.struct_size == sizeof clamp && clamp.body.index == -1 && clamp.axes == 7);
   ogive_contact_def_init(&contact, sizeof contact);
   CHECK(contact.method == OGIVE_CONTACT_PERSISTENT && contact.gap_offset == 0.3 && contact.master.index == -1);
   ogive_stop_def_init(&stop, sizeof stop);
-  CHECK(stop.body.index == -1 && stop.stop_when_out == 1);
+  CHECK(stop.body.index == -1 && stop.stop_when_out == 1 && stop.exchange_window == 0 && stop.exchange_tolerance == 0.001);
   ogive_load_def_init(&load, sizeof load);
   CHECK(load.kind == OGIVE_LOAD_ACCELERATION && load.region == OGIVE_REGION_EVERYWHERE && load.axes == 7);
   CHECK(load.struct_size == sizeof load && load.body.index == -1);
@@ -62,6 +63,7 @@ static void numerics_contact_clamps_and_stops_are_taken(small_world* small) {
   ogive_stop_def stop;
   ogive_numerics_def_init(&numerics, sizeof numerics);
   numerics.time_step_factor = 0.4;
+  numerics.drop_debris = 1;
   CHECK_OK(world, ogive_world_set_numerics(world, &numerics));
   CHECK_OK(world, ogive_world_set_threads(world, 2));
   ogive_contact_def_init(&contact, sizeof contact);
@@ -75,6 +77,7 @@ static void numerics_contact_clamps_and_stops_are_taken(small_world* small) {
   CHECK_OK(world, ogive_clamp_add(world, &clamp));
   ogive_stop_def_init(&stop, sizeof stop);
   stop.body = small->left;
+  stop.exchange_window = 10;
   CHECK_OK(world, ogive_world_set_stop(world, &stop));
 }
 

@@ -196,6 +196,24 @@ TEST(Run, max_steps_ends_it) {
   EXPECT_EQ(summary.at("stop_reason"), "max_steps");
 }
 
+TEST(Run, ends_when_the_energy_exchange_has_ended) {
+  const ScratchDirectory scratch;
+  const Outcome outcome =
+      run_program(scratch.path(), {"run", scene_file(), "-o", "results", "--until", "5", "--set", "stop.exchange_window=0.03", "--set",
+                                   "stop.exchange_tolerance=0.05", "--set", "numerics.drop_debris=true"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("ended (exchange_ended)"), std::string::npos) << outcome.output;
+  const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
+  EXPECT_EQ(summary.at("stop_reason"), "exchange_ended");
+  EXPECT_LT(summary.at("time"), 1);
+  EXPECT_EQ(summary.at("bodies").at("left").at("dropped_particles"), 0);
+  EXPECT_EQ(summary.at("energy").at("dropped_energy"), 0);
+  // An end that a restart gives is another: it goes on.
+  const Outcome on = run_program(scratch.path(), {"restart", "results", "--until", "6", "--set", "stop.exchange_window=0"});
+  ASSERT_EQ(on.exit_code, 0) << on.errors;
+  EXPECT_NE(read_json(scratch / "results" / "summary.json").at("stop_reason"), "exchange_ended");
+}
+
 TEST(Run, growing_energy_is_said_loudly_and_stops_the_run_above_the_limit) {
   const ScratchDirectory scratch;
   // A soft block turns by 0.02 rad a step, of which the stress first makes energy (docs/stability.md).

@@ -225,7 +225,7 @@ TEST(Scene, messages_name_place_key_value_and_expectation) {
 TEST(Scene, messages_give_line_and_column) {
   EXPECT_EQ(refusal({}, "when = 3\n"),
             "scene.toml:28:1: stop.when: unknown key (known here: time, body, settle_window, "
-            "settle_tolerance, stop_when_stopped, stop_when_out, max_steps)");
+            "settle_tolerance, stop_when_stopped, stop_when_out, exchange_window, exchange_tolerance, max_steps)");
   EXPECT_EQ(refusal({}, "[output]\nhistory_interval = 0\n"),
             "scene.toml:29:20: output.history_interval: must be > 0, got 0");
   EXPECT_EQ(refusal({}, "[numerics\n").substr(0, 32), "scene.toml:28:10: not valid TOML");
@@ -237,6 +237,10 @@ TEST(Scene, refuses_what_does_not_go_together) {
   EXPECT_NE(refusal({{"bodies.ball.scale", "2"}}).find("bodies.ball.scale: unknown key"), std::string::npos);
   EXPECT_NE(refusal({{"materials.zinc.elastic.bulk_modulus", "2"}}).find("got some of both"), std::string::npos);
   EXPECT_NE(refusal({{"stop.settle_window", "2"}}).find("needs stop.body"), std::string::npos);
+  EXPECT_NE(refusal({{"stop.exchange_tolerance", "0.1"}}).find("needs stop.exchange_window"), std::string::npos);
+  EXPECT_NE(refusal({{"stop.exchange_window", "1"}, {"stop.exchange_tolerance", "1"}}).find("must be > 0 and < 1, got 1"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"numerics.drop_debris", "1"}}).find("numerics.drop_debris"), std::string::npos);
   EXPECT_NE(refusal({{"parameters.pi", "3"}}).find("constant of its own"), std::string::npos);
   EXPECT_NE(refusal({{"parameters.V0", "half+1"}}).find("in a circle"), std::string::npos);
   EXPECT_NE(refusal({{"numerics.threads", "1.5"}}).find("must be a whole number from 0 to 1024, got 1.5"),

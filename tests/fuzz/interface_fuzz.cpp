@@ -72,6 +72,7 @@ class Caller {
     def.update_order = input_.below(3);
     if (input_.one_in(3)) def.pic_fraction = input_.about(0.1);
     if (input_.one_in(3)) def.xpic_order = input_.one_in(8) ? input_.whole() : 1 + input_.below(4);
+    if (input_.one_in(3)) def.drop_debris = input_.one_in(8) ? input_.whole() : 1;
     see(ogive_world_set_numerics(world(), &def));
   }
 
@@ -231,6 +232,7 @@ class Caller {
     ogive_stop_def_init(&def, sizeof def);
     def.body = body();
     def.settle_window = input_.about(1), def.settle_tolerance = input_.about(1);
+    def.exchange_window = input_.about(1), def.exchange_tolerance = input_.about(0.1);
     see(ogive_world_set_stop(world(), &def));
   }
 

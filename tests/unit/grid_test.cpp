@@ -212,9 +212,9 @@ TEST(Grid, AParticleThatLeavesByAFreeFaceIsBookedWithItsMomentum) {
   const double mass = body.position[3];
   bin_particles(world.model, world.state, world.workspace, true);
   EXPECT_EQ(body.particles, 99);
-  EXPECT_EQ(body.totals.left_particles, 1);
-  EXPECT_EQ(body.totals.left_mass, mass);
-  EXPECT_EQ(body.totals.left_momentum[0], 3 * mass);
+  EXPECT_EQ(body.totals.left.particles, 1);
+  EXPECT_EQ(body.totals.left.mass, mass);
+  EXPECT_EQ(body.totals.left.momentum[0], 3 * mass);
 }
 
 TEST(Grid, AParticleThatIsNotANumberIsRefusedByName) {
