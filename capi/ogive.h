@@ -202,6 +202,11 @@ typedef struct ogive_numerics_def {
                                Default 0.01 */
   double energy_limit;      /* [-] growth at which a step fails with OGIVE_ERROR_NUMERICAL; the message names the time, the
                                particle with the most energy and the probable cause. > 0, infinity allowed. Default 1 */
+  int32_t skip_resting;     /* 1: particles to which nothing has happened yet, far from all that moves, are left out of a step; 0:
+                               they are computed too. No bit of any result depends on it (docs/theory.md, section 9a); never
+                               left out: what gravity or a load acts on, total Lagrangian bodies, anything where contact is by
+                               surfaces. Default 1 */
+  int32_t reserved2;
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
 /* Before ogive_world_prepare; another call replaces them. */
@@ -569,6 +574,7 @@ typedef struct ogive_progress {
   int64_t particles;         /* in the domain now */
   int64_t particle_steps;    /* sum over steps of particles, over restarts */
   int64_t memory_bytes;      /* held by the world now */
+  int64_t resting_particle_steps; /* part of particle_steps: left out because the particles were at rest, over restarts */
 } ogive_progress;
 /* struct_size must be set by the caller. Cheap: may be called each step. */
 OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_progress* progress);

@@ -127,7 +127,7 @@ NumericsScene read_numerics(const Section& root) {
   NumericsScene numerics;
   const auto section = root.optional_table(
       "numerics", Names{"shape_function", "time_step_factor", "maximum_time_step", "threads", "gravity", "transfer",
-                        "update_order", "pic_fraction", "xpic_order", "energy_warning", "energy_limit"});
+                        "update_order", "pic_fraction", "xpic_order", "energy_warning", "energy_limit", "skip_resting"});
   if (!section) return numerics;
   numerics.shape_function = section->optional_choice(
       "shape_function", {{"linear", OGIVE_SHAPE_LINEAR},
@@ -138,6 +138,7 @@ NumericsScene read_numerics(const Section& root) {
   numerics.maximum_time_step = section->optional_number("maximum_time_step", kPositive);
   numerics.energy_warning = section->optional_number("energy_warning", kPositive);
   numerics.energy_limit = section->optional_number("energy_limit", kPositive);
+  if (const auto skip = section->optional_flag("skip_resting")) numerics.skip_resting = *skip ? 1 : 0;
   if (const auto threads = section->optional_integer("threads", 0, 1024)) {
     numerics.threads = static_cast<int32_t>(*threads);
   }

@@ -28,8 +28,8 @@ constexpr ElementType element_type() {
 }
 
 // Grows by one with each set of arrays that is added. 2: loads, forces of the host, sums over pairs. 3: the energy watch, surfaces,
-// total Lagrangian bodies.
-constexpr std::int32_t save_version = 3;
+// total Lagrangian bodies. 4: groups at rest.
+constexpr std::int32_t save_version = 4;
 
 class Archive {
  public:

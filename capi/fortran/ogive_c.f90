@@ -130,6 +130,8 @@ module ogive_c
     integer(c_int32_t) :: reserved1
     real(c_double) :: energy_warning
     real(c_double) :: energy_limit
+    integer(c_int32_t) :: skip_resting
+    integer(c_int32_t) :: reserved2
   end type ogive_numerics_def
 
   type, bind(C) :: ogive_clamp_def
@@ -250,6 +252,7 @@ module ogive_c
     integer(c_int64_t) :: particles
     integer(c_int64_t) :: particle_steps
     integer(c_int64_t) :: memory_bytes
+    integer(c_int64_t) :: resting_particle_steps
   end type ogive_progress
 
   type, bind(C) :: ogive_ledger
