@@ -30,7 +30,7 @@ RestingLaw try_law(const Model& model, const Workspace& workspace, int index) {
     body.position[4 * p + 3] = model.material_of(index).density * h * h * h;
     body.velocity[4 * p + 3] = 1;
   }
-  const BodyState before = body;
+  BodyState before = body;
   AlignedVector<NodeRecord> nodes(block_nodes, NodeRecord{});
   AlignedVector<double> displacement(4 * group_padding, 0.0);
   KernelGroup group{};
@@ -61,14 +61,12 @@ RestingLaw try_law(const Model& model, const Workspace& workspace, int index) {
   law.fastest = sums.fastest;
   law.keeps = sums.bad_particle < 0 && sums.failed_particles == 0 && sums.plastic_dissipation == 0 &&
               sums.viscous_dissipation == 0 && sums.failure_loss == 0 && sums.failed_mass == 0 && !sums.outside;
-  std::vector<const AlignedVector<double>*> originals;
-  BodyState first = before;
-  const auto list = [&](BodyState& of) {
+  const auto arrays_of = [](BodyState& of) {
     std::vector<AlignedVector<double>*> arrays = {&of.position, &of.velocity, &of.affine};
     of.for_each_scalar([&](AlignedVector<double>& array) { arrays.push_back(&array); });
     return arrays;
   };
-  const auto was = list(first), is = list(body);
+  const auto was = arrays_of(before), is = arrays_of(body);
   for (std::size_t i = 0; i < was.size(); ++i)
     law.keeps = law.keeps && std::memcmp(was[i]->data(), is[i]->data(), was[i]->size() * sizeof(double)) == 0;
   return law;
