@@ -236,6 +236,8 @@ class Scene:
         if self.chance(0.3):
             self.value("pic_fraction", r.uniform(0, 1))
         self.value("update_order", r.choice(["stress_first", "stress_last", "stress_last_as_is"]))
+        if self.chance(0.3):
+            self.value("skip_resting", False)
         if self.chance(0.3) or all(self.rigid):
             self.value("maximum_time_step", 0.1 * self.end * self.T)
         if self.chance(0.3):

@@ -34,6 +34,7 @@
 #include "model.hpp"
 #include "plan.hpp"
 #include "planar/section.hpp"
+#include "resting.hpp"
 #include "solids.hpp"
 #include "state.hpp"
 #include "step.hpp"
@@ -921,6 +922,7 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
   defaults.energy_warning = numerics.energy_warning;
   defaults.energy_limit = numerics.energy_limit;
   defaults.drop_debris = numerics.drop_debris;
+  defaults.skip_resting = numerics.skip_resting;
   initialise(def, size, defaults);
 }
 
@@ -942,6 +944,9 @@ ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_d
     if (full.drop_debris != 0 && full.drop_debris != 1)
       refuse("drop_debris: must be 0 or 1, got " + std::to_string(full.drop_debris));
     trial.numerics.drop_debris = full.drop_debris != 0;
+    if (full.skip_resting != 0 && full.skip_resting != 1)
+      refuse("skip_resting: must be 0 or 1, got " + std::to_string(full.skip_resting));
+    trial.numerics.skip_resting = full.skip_resting == 1;
     trial.validate_numerics();
     set_threads(world, full.threads);
     model.numerics = trial.numerics;
@@ -1521,6 +1526,7 @@ ogive_status ogive_world_progress(const ogive_world* world, ogive_progress* prog
     full.steps = world->state.steps;
     full.particles = world->state.particle_count();
     full.particle_steps = world->state.particle_steps;
+    full.resting_particle_steps = world->state.resting_particle_steps;
     full.memory_bytes = world->state.memory_bytes() + world->workspace.memory_bytes();
     deliver(full, progress, "progress");
   });
@@ -1753,6 +1759,7 @@ ogive_status ogive_field_set(ogive_world* world, ogive_body_id id, const char* n
       // What the host gives is no exchange; the memory of the beginning begins anew.
       if (!world->state.stop.exchange.begun) world->state.stop.exchange = {};
     }
+    find_resting(world->model, world->state, world->workspace, id.index);
     if (field_name == "position") body.drifted = true;  // to be binned anew before the next step
     if (field_name == "velocity") {
       // The next step must be safe for the new speed as well.

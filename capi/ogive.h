@@ -216,7 +216,10 @@ typedef struct ogive_numerics_def {
                                rigid and total Lagrangian bodies or those whose surface makes contact; not with
                                OGIVE_SPACE_AXISYMMETRIC. What others do after later collisions among themselves is not
                                foreseen beyond that */
-  int32_t reserved2;
+  int32_t skip_resting;     /* 1: particles to which nothing has happened yet, far from all that moves, are left out of a step; 0:
+                               they are computed too. No bit of any result depends on it (docs/theory.md, section 9a); never
+                               left out: what gravity or a load acts on, total Lagrangian bodies, anything where contact is by
+                               surfaces. Default 1 */
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
 /* Before ogive_world_prepare; another call replaces them. */
@@ -601,6 +604,7 @@ typedef struct ogive_progress {
   int64_t particles;         /* in the domain now */
   int64_t particle_steps;    /* sum over steps of particles, over restarts */
   int64_t memory_bytes;      /* held by the world now */
+  int64_t resting_particle_steps; /* part of particle_steps: left out because the particles were at rest, over restarts */
 } ogive_progress;
 /* struct_size must be set by the caller. Cheap: may be called each step. */
 OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_progress* progress);

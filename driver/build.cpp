@@ -97,6 +97,7 @@ class Builder {
     assign(def.energy_warning, scene_.numerics.energy_warning);
     assign(def.energy_limit, scene_.numerics.energy_limit);
     assign(def.drop_debris, scene_.numerics.drop_debris);
+    assign(def.skip_resting, scene_.numerics.skip_resting);
     require(ogive_world_set_numerics(world_, &def), "numerics");
   }
 

@@ -364,6 +364,7 @@ void Output::write_summary(ogive_world* world, const RunFacts& facts) const {
   json["stop_reason"] = facts.stop_reason;
   json["particles"] = progress.particles;
   json["particle_steps"] = progress.particle_steps;
+  json["resting_particle_steps"] = progress.resting_particle_steps;
   json["wall_seconds"] = facts.wall_seconds;
   json["particle_steps_per_second"] =
       facts.wall_seconds > 0 ? static_cast<double>(progress.particle_steps) / facts.wall_seconds : 0.0;

@@ -172,7 +172,8 @@ Error collapse(const Model& model, const State& state, double dt, double fastest
 
 void require_sound(const Model& model, const State& state) {
   require_finite("state/time", {state.time, state.last_time_step, state.stable_time_step});
-  if (state.time < 0 || state.last_time_step < 0 || state.steps < 0 || state.particle_steps < 0)
+  if (state.time < 0 || state.last_time_step < 0 || state.steps < 0 || state.particle_steps < 0 ||
+      state.resting_particle_steps < 0)
     throw Error(ErrorKind::Format, "state/time: times and counts must be >= 0");
   const ExchangeState& exchange = state.stop.exchange;
   require_finite("state/stop/exchange", {exchange.time, exchange.internal, exchange.dissipated});

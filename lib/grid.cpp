@@ -186,7 +186,7 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
   BlockTable table(body.groups.size() + 64);
   std::uint64_t last_key = ~std::uint64_t{0};
   std::int32_t last_group = -1;
-  auto take = [&](std::int64_t p) {
+  auto take = [&](std::int64_t p, bool resting) {
     const double* x = &body.position[4 * p];
     if (has_left(model, state, index, p)) {
       // A total Lagrangian body stays whole: what lies outside is only out of reach of contact.
@@ -205,6 +205,7 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
       if (last_group == static_cast<std::int32_t>(groups.size())) {
         Group group;
         group.block = block;
+        group.resting = true;
         group.low = {3, 3, 3};
         group.high = {0, 0, 0};
         groups.push_back(group);
@@ -212,6 +213,7 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
     }
     Group& group = groups[last_group];
     ++group.count;
+    group.resting = group.resting && resting;
     std::int32_t in_block = 0;
     for (int axis = 2; axis >= 0; --axis) {
       const std::int32_t c = cell[axis] & 3;
@@ -223,10 +225,10 @@ void bin_body(const Model& model, State& state, Workspace& workspace, int index)
     bin.push_back(last_group * block_nodes + in_block);
   };
   if (body.groups.empty()) {
-    for (std::int64_t p = 0; p < body.particles; ++p) take(p);
+    for (std::int64_t p = 0; p < body.particles; ++p) take(p, false);
   } else {
     for (const Group& group : body.groups)
-      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) take(p);
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) take(p, group.resting);
   }
 
   // Groups by block: z, then y, then x. The particles keep their order within a cell.
@@ -624,6 +626,8 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   for (std::size_t b = 0; b < workspace.displacement.size(); ++b)
     if (!model.bodies[b].rigid() && !state.bodies[b].lagrangian)
       workspace.displacement[b].resize(4 * static_cast<std::size_t>(state.bodies[b].padded));
+  workspace.resting.stale = true;
+  workspace.resting.skipping = false;
   workspace.linked = true;
 }
 

@@ -33,6 +33,7 @@ struct Slot {
   std::int32_t rigid = -1;    // index in Workspace::rigid; -1: deformable
   bool lagrangian = false;    // of a total Lagrangian body on the common grid
   std::int32_t ordinal = 0;   // among the slots of its field
+  bool idle = false;          // only groups that the step leaves out reach it: its nodes are zero, without mass
 
   // Moved by other means than this grid, which has it for contact alone.
   bool guided() const { return rigid >= 0 || lagrangian; }
@@ -56,6 +57,7 @@ struct GroupLinks {
   bool contact = false;  // some of its slots have contact records
   std::int32_t first_load_sum = 0;  // in Workspace::load_sums
   bool guided = false;  // as Slot::guided
+  bool skipped = false;  // at rest and far from what moves: the step leaves it out
 };
 
 // Groups of all bodies in one row of blocks along x: worked on by one thread, in order. Pencils of one of the four colours
@@ -113,6 +115,21 @@ struct ClampNode {
   std::int32_t axes = 0;
 };
 
+// What a body's law makes of particles at rest (resting.hpp): they stay as they are, bit for bit, and the speed of waves.
+struct RestingLaw {
+  bool keeps = false;
+  double fastest = 0;
+};
+
+// Groups at rest.
+struct Resting {
+  std::vector<RestingLaw> laws;  // by body; empty: nothing can be at rest
+  bool stale = true;             // groups have moved, or the grid is another: what to leave out must be found anew
+  bool skipping = false;         // some links are left out
+  std::int64_t groups = 0;       // links at rest
+  std::int64_t skipped_particles = 0;  // of the links that are left out
+};
+
 // A node whose velocity a load prescribes.
 struct DrivenNode {
   std::int64_t node = 0;
@@ -141,6 +158,7 @@ struct Workspace {
   std::vector<DrivenNode> driven;
   std::vector<KernelMaterial> materials;  // by body
   ContactNeeds contact_needs;
+  Resting resting;
   std::vector<BlockContacts> block_contacts;  // of this step, one a mixed block (at least)
   std::vector<std::int32_t> slot_links_begin, slot_links;  // links by slot that they reach; where a rule asks for particles
   std::vector<PlacedSurface> surfaces;        // by body; empty where no rule asks for one

@@ -438,6 +438,7 @@ void Model::exchange(Archive& a) {
     a.value("model/numerics/energy_limit", numerics.energy_limit);
   }
   if (a.version() >= 4) a.value("model/numerics/drop_debris", numerics.drop_debris);
+  if (a.version() >= 4) a.value("model/numerics/skip_resting", numerics.skip_resting);
 
   const auto count = [&](const char* name, auto& list, std::int32_t limit) {
     std::int32_t n = static_cast<std::int32_t>(list.size());

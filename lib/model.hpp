@@ -92,6 +92,7 @@ struct Numerics {
   std::int32_t xpic_order = 2;
   double energy_warning = 0.01, energy_limit = 1.0;  // growth of the energy, see energy_watch.hpp
   bool drop_debris = false;                          // see debris.hpp
+  bool skip_resting = true;                          // see resting.hpp
 
   bool affine() const { return transfer == Transfer::AffineFlip || transfer == Transfer::Apic; }
   bool stress_first() const { return update_order == UpdateOrder::StressFirst; }

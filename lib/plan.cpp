@@ -7,6 +7,7 @@
 #include "contact/method.hpp"
 #include "contact/normal.hpp"
 #include "debris.hpp"
+#include "resting.hpp"
 #include "surface/meeting.hpp"
 #include "time_step.hpp"
 
@@ -113,6 +114,27 @@ void describe_contact(std::string& text, const Model& model, const Workspace& wo
          workspace.mixed.size());
 }
 
+// Groups to which nothing has happened yet.
+void describe_resting(std::string& text, const Model& model, const State& state, const Workspace& workspace) {
+  const char* const why_not = why_nothing_rests(model, workspace);
+  if (why_not || !model.numerics.skip_resting) {
+    line(text, "particles at rest: computed as all others (%s)", why_not ? why_not : "skip_resting is off");
+    return;
+  }
+  std::int64_t resting = 0;
+  for (const BodyState& body : state.bodies)
+    for (const Group& group : body.groups) resting += group.resting ? group.count : 0;
+  const int rings = rings_around_motion(model.numerics);
+  line(text,
+       "particles at rest: left out of a step, which changes no bit of the results, where %d ring%s of blocks lie%s between them and "
+       "what moves; at rest now: %lld of %lld",
+       rings, rings == 1 ? "" : "s", rings == 1 ? "s" : "", static_cast<long long>(resting),
+       static_cast<long long>(state.particle_count()));
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (!model.bodies[b].rigid() && !state.bodies[b].lagrangian && !workspace.resting.laws[b].keeps)
+      line(text, "  not of \"%s\": its law does not keep the state of rest to the bit", model.bodies[b].name.c_str());
+}
+
 }  // namespace
 
 std::string describe_plan(const Model& model, const State& state, const Workspace& workspace) {
@@ -146,6 +168,7 @@ std::string describe_plan(const Model& model, const State& state, const Workspac
   describe_contact(text, model, workspace);
   const Vector3& g = model.numerics.gravity;
   line(text, "gravity: %s", g[0] == 0 && g[1] == 0 && g[2] == 0 ? "left out (it is 0)" : "on all bodies");
+  describe_resting(text, model, state, workspace);
   line(text, "time step: %.6g at first (factor %.3g)", state.stable_time_step, model.numerics.time_step_factor);
   if (numerics.affine() && numerics.time_step_factor > lone_affine_particle_limit)
     line(text, "  caution: with affine velocities a lone particle is stable for factors below %.2f (no shear stiffness) to 0.73",

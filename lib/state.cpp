@@ -52,8 +52,11 @@ void allocate_particles(const Material& material, const Body& rules, std::int64_
   if (material.thermal()) body.temperature.assign(n, material.room_temperature);
   if (material.hyperelastic() || rules.total_lagrangian())
     for (int c = 0; c < 9; ++c) body.deformation[c].assign(n, c % 4 == 0 ? 1.0 : 0.0);
-  for (int c = 0; c < material.history_size(); ++c)
-    body.history[c].assign(n, material.strength == Strength::J2Multiplicative && c < 9 && c % 4 == 0 ? 1.0 : 0.0);
+  for (int c = 0; c < material.history_size(); ++c) body.history[c].assign(n, initial_history(material, c));
+}
+
+double initial_history(const Material& material, int component) {
+  return material.strength == Strength::J2Multiplicative && component < 9 && component % 4 == 0 ? 1.0 : 0.0;
 }
 
 void allocate_transfer(const Model& model, int index, BodyState& body) {
@@ -161,6 +164,15 @@ static void exchange_groups(Archive& a, const std::string& at, BodyState& body) 
   }
 }
 
+// Which groups are at rest. Older saves do not tell: all may be, as their particles are looked at in any case.
+static void exchange_resting(Archive& a, const std::string& at, BodyState& body) {
+  std::vector<std::uint8_t> resting(body.groups.size(), 1);
+  if (!a.loading())
+    for (std::size_t g = 0; g < resting.size(); ++g) resting[g] = body.groups[g].resting;
+  if (a.version() >= 4) a.sized(at + "resting", resting, static_cast<std::int64_t>(resting.size()));
+  for (std::size_t g = 0; g < resting.size() && a.loading(); ++g) body.groups[g].resting = resting[g] != 0;
+}
+
 static void exchange_reference(State& state, std::size_t b, Archive& a) {
   BodyState& body = state.bodies[b];
   ReferenceState& reference = body.reference;
@@ -207,6 +219,7 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/stable_time_step", stable_time_step);
   a.value("state/steps", steps);
   a.value("state/particle_steps", particle_steps);
+  if (a.version() >= 4) a.value("state/resting_particle_steps", resting_particle_steps);
   a.value("state/stop/reference_time", stop.reference_time);
   a.value("state/stop/reference_speed", stop.reference_speed);
   a.value("state/stop/slowed", stop.slowed);
@@ -286,6 +299,7 @@ void State::exchange(const Model& model, Archive& a) {
     }
 
     exchange_groups(a, at, body);
+    exchange_resting(a, at, body);
     if (!rigid && model.bodies[b].has_surface())
       a.sized(at + "surface_vertices", body.surface_vertices,
               static_cast<std::int64_t>(model.bodies[b].surface.vertices.size()));

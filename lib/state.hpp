@@ -31,6 +31,7 @@ struct Group {
   std::int32_t count = 0;               // real particles; the padding follows
   // Lowest and highest cell (0..3) that held a particle at the last binning, per axis.
   std::array<std::int32_t, 3> low{}, high{};
+  bool resting = false;                 // nothing has happened to its particles yet (resting.hpp)
 
   std::int64_t padded_end() const { return begin + (count + group_padding - 1) / group_padding * group_padding; }
 };
@@ -174,6 +175,7 @@ struct StopState {
 struct State {
   double time = 0, last_time_step = 0, stable_time_step = 0;
   std::int64_t steps = 0, particle_steps = 0;
+  std::int64_t resting_particle_steps = 0;  // of these, left out because the particles were at rest
   std::vector<BodyState> bodies;
   // Of total Lagrangian bodies: their particles' mass, place, velocity and volume in groups of where they are now, for
   // contact; `number` is the place in the body's own arrays. Empty for others.
@@ -192,6 +194,8 @@ struct State {
 
 // Gives a body the arrays that its material and formulation need, `padded` long; a rigid one has no stress.
 void allocate_particles(const Material& material, const Body& rules, std::int64_t padded, BodyState& body);
+// What a law remembers of a particle to which nothing has happened, value by value.
+double initial_history(const Material& material, int component);
 // Gives it those that the numerics need, where it has none yet.
 void allocate_transfer(const Model& model, int index, BodyState& body);
 

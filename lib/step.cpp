@@ -20,6 +20,7 @@
 #include "loads/loads.hpp"
 #include "parallel.hpp"
 #include "phases.hpp"
+#include "resting.hpp"
 #include "rigid/rigid.hpp"
 #include "surface/meeting.hpp"
 #include "time_step.hpp"
@@ -54,6 +55,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   bin_particles(model, state, workspace, false);                 // particles that left their cells; the domain
   if (debris_is_due(model, state)) drop_debris(model, state, workspace);
   if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
+  choose_groups(model, state, workspace);                        // nothing has happened to the others
   allocate_load_sums(model, state, workspace);
 
   clear_grid(workspace);
@@ -114,11 +116,13 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   if (!stress_first) update_stress(model, state, workspace, dt); // (29), (30), stress; moves the particles (33)
   finish_rigid_step(model, state, workspace, dt);
   finish_lagrangian_step(model, state, workspace, dt);
+  keep_resting(model, state, workspace);
 
   state.time += dt;
   state.last_time_step = dt;
   ++state.steps;
   state.particle_steps += state.particle_count();
+  state.resting_particle_steps += workspace.resting.skipped_particles;
   check_speeds(model, state);
   state.stable_time_step = stable_time_step(model, state, workspace);  // (35)
 }
@@ -133,6 +137,7 @@ KernelParticles particles_of(State& state, Workspace& workspace, const GroupLink
 
 void clear_grid(Workspace& workspace) {
   for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+    if (workspace.slots[s].idle) return;
     // Sizes that the compiler knows take no call.
     void* const first = &workspace.nodes[s * block_nodes];
     if (workspace.nodes_in_use == block_nodes)
@@ -327,7 +332,7 @@ void accelerations(State& state, Workspace& workspace, double dt) {
   for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
     double given = 0;
     workspace.slot_given[s] = 0;
-    if (workspace.slots[s].guided()) return;
+    if (workspace.slots[s].guided() || workspace.slots[s].idle) return;
     for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) {
       NodeRecord& node = workspace.nodes[i];
       for (int c = 0; c < 3; ++c) {
@@ -352,7 +357,7 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
     for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
       const GroupLinks& link = workspace.links[l];
       workspace.move_sums[l] = {};
-      if (link.guided) continue;
+      if (link.guided || link.skipped) continue;
       if (xpic) {
         const auto filter = filter_of(workspace, link);
         NodeRecord* nodes[27];
@@ -399,6 +404,7 @@ void prepare_state(const Model& model, State& state, Workspace& workspace) {
     bin_particles(model, state, workspace, true);
   }
   link_grid(model, state, workspace);
+  prepare_resting(model, state, workspace, fresh);
   if (state.stable_time_step == 0) state.stable_time_step = initial_time_step(model, state, workspace);
 }
 

@@ -132,7 +132,7 @@ module ogive_c
     real(c_double) :: energy_warning
     real(c_double) :: energy_limit
     integer(c_int32_t) :: drop_debris
-    integer(c_int32_t) :: reserved2
+    integer(c_int32_t) :: skip_resting
   end type ogive_numerics_def
 
   type, bind(C) :: ogive_clamp_def
@@ -258,6 +258,7 @@ module ogive_c
     integer(c_int64_t) :: particles
     integer(c_int64_t) :: particle_steps
     integer(c_int64_t) :: memory_bytes
+    integer(c_int64_t) :: resting_particle_steps
   end type ogive_progress
 
   type, bind(C) :: ogive_ledger

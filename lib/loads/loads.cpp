@@ -73,7 +73,7 @@ void allocate_load_sums(const Model& model, const State& state, Workspace& works
     link.first_load_sum = next;
     next += size[link.body];
   }
-  workspace.load_sums.resize(static_cast<std::size_t>(next));
+  workspace.load_sums.assign(static_cast<std::size_t>(next), {});
 }
 
 void map_loads(const Model& model, const State& state, Workspace& workspace, std::int32_t index) {
@@ -104,7 +104,6 @@ void measure_loads(const Model& model, const State& state, Workspace& workspace,
   const BodyLoads loads = loads_of(model, state, link.body);
   const Group& group = body.groups[link.group];
   LoadSums* sums = &workspace.load_sums[static_cast<std::size_t>(link.first_load_sum)];
-  for (int k = 0; k <= loads.count; ++k) sums[k] = {};
   for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) {
     if ((body.loads.empty() || body.loads[p] == 0) && body.force.empty()) continue;
     const double* x = &body.position[4 * p];

@@ -160,6 +160,7 @@ static void definitions(void) {
   WITH(numerics, energy_warning, 0, ogive_world_set_numerics(world, &numerics), "energy_warning");
   WITH(numerics, energy_limit, NAN, ogive_world_set_numerics(world, &numerics), "energy_limit");
   WITH(numerics, drop_debris, 2, ogive_world_set_numerics(world, &numerics), "drop_debris");
+  WITH(numerics, skip_resting, 2, ogive_world_set_numerics(world, &numerics), "skip_resting");
   WITH(numerics, gravity[0], NAN, ogive_world_set_numerics(world, &numerics), "gravity");
   WITH(numerics, threads, -1, ogive_world_set_numerics(world, &numerics), "threads");
   WITH(numerics, pic_fraction, 1.5, ogive_world_set_numerics(world, &numerics), "pic_fraction");

@@ -391,8 +391,9 @@ normal = [0, 0, -1]
 method = "huang_first"
 friction = 0
 )toml";
-  const Scene scene = scene_of({{"bodies.ball.formulation", "rigid"}, {"numerics.transfer", "xpic"}, {"numerics.xpic_order", "5"}}, more);
+  const Scene scene = scene_of({{"bodies.ball.formulation", "rigid"}, {"numerics.transfer", "xpic"}, {"numerics.xpic_order", "5"}, {"numerics.skip_resting", "false"}}, more);
   EXPECT_EQ(scene.numerics.xpic_order, 5);
+  EXPECT_EQ(scene.numerics.skip_resting, 0);
   EXPECT_EQ(scene.bodies[1].formulation, OGIVE_FORMULATION_RIGID_FREE);
   EXPECT_EQ(scene.bodies[2].formulation, OGIVE_FORMULATION_RIGID_PRESCRIBED);
   ASSERT_EQ(scene.bodies[3].motion.size(), 2U);

@@ -71,6 +71,7 @@ class Caller {
     def.transfer = input_.below(input_.one_in(8) ? 6 : 4);
     def.update_order = input_.below(3);
     if (input_.one_in(3)) def.pic_fraction = input_.about(0.1);
+    if (input_.one_in(3)) def.skip_resting = input_.below(input_.one_in(8) ? 3 : 2);
     if (input_.one_in(3)) def.xpic_order = input_.one_in(8) ? input_.whole() : 1 + input_.below(4);
     if (input_.one_in(3)) def.drop_debris = input_.one_in(8) ? input_.whole() : 1;
     see(ogive_world_set_numerics(world(), &def));

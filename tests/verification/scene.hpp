@@ -112,10 +112,11 @@ class Scene {
   Scene& numerics(std::int32_t shape, double factor, Vec3 gravity = {}, std::int32_t threads = 1,
                   std::optional<std::int32_t> transfer = {}, std::int32_t update_order = OGIVE_UPDATE_STRESS_FIRST,
                   std::optional<double> maximum_time_step = {}, std::int32_t xpic_order = 2,
-                  std::optional<double> energy_limit = {}) {
+                  std::optional<double> energy_limit = {}, bool skip_resting = true) {
     ogive_numerics_def def;
     ogive_numerics_def_init(&def, sizeof def);
     if (energy_limit) def.energy_limit = *energy_limit;
+    def.skip_resting = skip_resting;
     if (maximum_time_step) def.maximum_time_step = *maximum_time_step;
     def.xpic_order = xpic_order;
     // Trilinear functions are verified with the papers' transfer, B-splines with the engine's default.
