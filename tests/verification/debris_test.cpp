@@ -348,7 +348,7 @@ TEST(Debris, OneAndTwoThreadsDropTheSame) {
   Scene two = debris.build();
   std::int64_t last = 0;
   int times = 0;
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 3; ++i) {
     one.steps(51);
     two.steps(51);
     expect_same_bits(one, two);

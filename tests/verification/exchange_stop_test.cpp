@@ -12,16 +12,17 @@ constexpr double window = 0.05;  // ms; shorter than the flight, about as long a
 
 /// Two soft elastic balls of radius 3, one gap apart, of which the first flies towards the other at 10 m/s.
 struct Balls {
-  double gap = 1, tolerance = 0.001;
+  double gap = 1, tolerance = 0.1;  // the balls go on ringing with some hundredths of the energy
   double aside = 0;  // of the second; beyond 6 they miss each other
-  double domain = 20;
+  bool third = false;  // one far from them, which flies up
+  double top = 10;     // of the domain
   Vec3 gravity{};
   bool rigid = false;
   std::int32_t threads = 1;
 
   Scene build() const {
     Scene scene;
-    scene.grid(1, {-20, -10, -10}, {domain, 20, 10});
+    scene.grid(1, {-20, -10, -10}, {20, 20, top});
     scene.numerics(OGIVE_SHAPE_QUADRATIC_BSPLINE, 0.5, gravity, threads, {}, OGIVE_UPDATE_STRESS_FIRST, 1e-3);
     const ogive_material_id soft = scene.material("soft", elastic(2.7e-3, 690, 0.3));
     const auto add = [&](const char* name, Vec3 centre, Vec3 velocity) {
@@ -30,6 +31,7 @@ struct Balls {
     };
     add("first", {-3 - gap, 0, 0}, {10, 0, 0});
     add("second", {3, aside, 0}, {0, 0, 0});
+    if (third) add("third", {0, 12, 3}, {0, 0, 20});
     ogive_stop_def def;
     ogive_stop_def_init(&def, sizeof def);
     def.exchange_window = window;
@@ -90,20 +92,20 @@ TEST(ExchangeStop, TwoElasticBallsEndTheRunOnceTheyHavePartedNotBefore) {
 }
 
 TEST(ExchangeStop, BallsThatFlyPastEachOtherNeverEndIt) {
-  Scene scene = Balls{.aside = 12}.build();
+  Scene scene = Balls{.tolerance = 0.001, .aside = 12}.build();
   EXPECT_EQ(run(scene, 600).end, -1);
   EXPECT_GT(scene.progress().time, 5 * window);
 }
 
 TEST(ExchangeStop, GravityThatMovesWhatFliesIsNoExchange) {
   // It adds 2 % to the energy of the balls, at first by less than the tolerance within a window and later by more.
-  Scene scene = Balls{.aside = 12, .gravity = {0, 0, -2}}.build();
+  Scene scene = Balls{.tolerance = 0.001, .aside = 12, .gravity = {0, 0, -2}}.build();
   EXPECT_EQ(run(scene, 600).end, -1);
   EXPECT_GT(scene.ledger().kinetic, 1.01 * scene.ledger().initial_total);
 }
 
 TEST(ExchangeStop, ItEndsAfterTheCollisionUnderGravityToo) {
-  Scene scene = Balls{.tolerance = 0.02, .gravity = {0, 0, -1}}.build();
+  Scene scene = Balls{.gravity = {0, 0, -1}}.build();
   const Course course = run(scene, 2000);
   EXPECT_EQ(scene.progress().stop, OGIVE_STOP_EXCHANGE_ENDED);
   EXPECT_GT(course.end, course.last_push);
@@ -120,17 +122,19 @@ TEST(ExchangeStop, RigidBallsEndItThoughNothingIsStoredOrDissipatedInThem) {
 }
 
 TEST(ExchangeStop, WhatLeavesTheDomainIsNoExchange) {
-  // The foremost particles of the second ball leave by the near face while the window runs, with far more than a thousandth of
+  // A third ball, which meets nothing, leaves by the near face all the time that the window runs, with more than the tolerance of
   // the energy.
-  Scene far = Balls{}.build(), near = Balls{.domain = 6.4}.build();
+  Scene far = Balls{.tolerance = 0.02, .third = true, .top = 20}.build(), near = Balls{.tolerance = 0.02, .third = true}.build();
   const Course course = run(far, 2000), same = run(near, 2000);
-  measured("left", static_cast<double>(near.result(second).left_domain));
-  EXPECT_GT(near.ledger().left_domain_energy, 0.005 * near.ledger().initial_total);
+  measured("end", course.end);
+  EXPECT_EQ(far.result({2}).left_domain, 0);
+  EXPECT_GT(near.ledger().left_domain_energy, 0.02 * near.ledger().initial_total);
+  EXPECT_GT(course.end, 0);
   EXPECT_EQ(same.steps, course.steps);
 }
 
 TEST(ExchangeStop, VelocitiesThatTheHostSetsAreNoExchange) {
-  Scene scene = Balls{.aside = 12}.build();
+  Scene scene = Balls{.tolerance = 0.001, .aside = 12}.build();
   scene.steps(10);
   std::vector<double> velocity = scene.field(first, "velocity");
   for (std::size_t i = 0; i < velocity.size(); i += 3) velocity[i] = 20;
@@ -187,5 +191,5 @@ TEST(ExchangeStop, ThePlanTellsOfIt) {
   Scene scene = Balls{}.build();
   std::string text(8192, '\0');
   scene.check(ogive_world_plan(scene.get(), text.data(), text.size(), nullptr));
-  EXPECT_NE(text.find("stop: when no energy has changed by more than 0.1 % of the initial total for 0.05"), std::string::npos) << text;
+  EXPECT_NE(text.find("stop: when no energy has changed by more than 10 % of the initial total for 0.05"), std::string::npos) << text.c_str();
 }
