@@ -18,12 +18,29 @@ struct Case {
   int steps = 40;
   double least_part = 0.1;  // of the particle-steps, that are left out
   std::int32_t threads = 1;  // of the run that is interrupted
+  bool sudden = false;       // and a layer of particles at the end of a block moves at once
 };
 
 Scene built(const Build& build, bool skip, std::int32_t threads = 1) {
   Scene scene;
   build(scene, skip, threads);
   scene.prepare();
+  return scene;
+}
+
+// The layer 61.5 < x < 62 of body 1. Blocks of the grid end at 62: what the layer moves in a step lies as many blocks away as can
+// be, and, unlike ahead of a wave, moves by more than what counts as none.
+void move_layer(Scene& scene) {
+  const std::vector<double> position = scene.field({1}, "position");
+  std::vector<double> velocity = scene.field({1}, "velocity");
+  for (std::size_t i = 0; i < position.size(); i += 3)
+    if (position[i] > 61.5 && position[i] < 62) velocity[i] = 100, velocity[i + 1] = 30;
+  scene.set_field({1}, "velocity", velocity);
+}
+
+Scene begun(const Case& of, bool skip, std::int32_t threads = 1) {
+  Scene scene = built(of.build, skip, threads);
+  if (of.sudden) move_layer(scene);
   return scene;
 }
 
@@ -56,7 +73,7 @@ void step_both(Scene& a, Scene& b, int steps) {
 }
 
 void compare(const Case& of) {
-  Scene skipping = built(of.build, true), computing = built(of.build, false);
+  Scene skipping = begun(of, true), computing = begun(of, false);
   step_both(skipping, computing, of.steps);
   expect_same_saves(skipping, computing);
   measured("left out", part_left_out(skipping));
@@ -64,7 +81,7 @@ void compare(const Case& of) {
   EXPECT_EQ(computing.progress().resting_particle_steps, 0);
 
   // An interruption half-way, some with two threads.
-  Scene interrupted = built(of.build, true, of.threads);
+  Scene interrupted = begun(of, true, of.threads);
   interrupted.steps(of.steps / 2);
   Store store;
   store.save(interrupted);
@@ -132,7 +149,7 @@ std::vector<Case> schemes() {
       const auto add = [&](const std::string& name, Bar bar) {
         bar.shape = shape;
         bar.order = order;
-        cases.push_back({where + name, bar, 30, 0.2});
+        cases.push_back({where + name, bar, 25, 0.1, 1, true});
       };
       add("Flip", {.transfer = OGIVE_TRANSFER_FLIP});
       add("FlipWithPic", {.transfer = OGIVE_TRANSFER_FLIP, .pic_fraction = 0.1});
