@@ -17,12 +17,30 @@ struct Case {
   Build build;
   int steps = 40;
   double least_part = 0.1;  // of the particle-steps, that are left out
+  std::int32_t threads = 1;  // of the run that is interrupted
+  bool sudden = false;       // and a layer of particles at the end of a block moves at once
 };
 
 Scene built(const Build& build, bool skip, std::int32_t threads = 1) {
   Scene scene;
   build(scene, skip, threads);
   scene.prepare();
+  return scene;
+}
+
+// The layer 61.5 < x < 62 of body 1. Blocks of the grid end at 62: what the layer moves in a step lies as many blocks away as can
+// be, and, unlike ahead of a wave, moves by more than what counts as none.
+void move_layer(Scene& scene) {
+  const std::vector<double> position = scene.field({1}, "position");
+  std::vector<double> velocity = scene.field({1}, "velocity");
+  for (std::size_t i = 0; i < position.size(); i += 3)
+    if (position[i] > 61.5 && position[i] < 62) velocity[i] = 100, velocity[i + 1] = 30;
+  scene.set_field({1}, "velocity", velocity);
+}
+
+Scene begun(const Case& of, bool skip, std::int32_t threads = 1) {
+  Scene scene = built(of.build, skip, threads);
+  if (of.sudden) move_layer(scene);
   return scene;
 }
 
@@ -55,20 +73,21 @@ void step_both(Scene& a, Scene& b, int steps) {
 }
 
 void compare(const Case& of) {
-  Scene skipping = built(of.build, true), computing = built(of.build, false);
+  Scene skipping = begun(of, true), computing = begun(of, false);
   step_both(skipping, computing, of.steps);
   expect_same_saves(skipping, computing);
   measured("left out", part_left_out(skipping));
   EXPECT_GT(part_left_out(skipping), of.least_part);
   EXPECT_EQ(computing.progress().resting_particle_steps, 0);
 
-  // Two threads, and an interruption half-way.
-  Scene threads = built(of.build, true, 2);
-  threads.steps(of.steps / 2);
+  // An interruption half-way, some with two threads.
+  Scene interrupted = begun(of, true, of.threads);
+  interrupted.steps(of.steps / 2);
   Store store;
-  store.save(threads);
+  store.save(interrupted);
   Scene loaded;
   store.load(loaded);
+  loaded.check(ogive_world_set_threads(loaded.get(), of.threads));
   loaded.steps(of.steps - of.steps / 2);
   expect_same_saves(skipping, loaded);
   EXPECT_EQ(loaded.progress().resting_particle_steps, skipping.progress().resting_particle_steps);
@@ -130,7 +149,7 @@ std::vector<Case> schemes() {
       const auto add = [&](const std::string& name, Bar bar) {
         bar.shape = shape;
         bar.order = order;
-        cases.push_back({where + name, bar, 30, 0.2});
+        cases.push_back({where + name, bar, 25, 0.1, 1, true});
       };
       add("Flip", {.transfer = OGIVE_TRANSFER_FLIP});
       add("FlipWithPic", {.transfer = OGIVE_TRANSFER_FLIP, .pic_fraction = 0.1});
@@ -235,25 +254,25 @@ struct Strike {
   std::int32_t formulation = OGIVE_FORMULATION_DEFORMABLE;
   bool half = false;
 
-  // A ball strikes a plate aslant, which lies on a backing plate.
+  // A ball strikes a long plate aslant near its end; the plate lies on a backing plate.
   void operator()(Scene& scene, bool skip, std::int32_t threads) const {
     std::array<std::int32_t, 6> faces = {};
     if (half) faces[2] = OGIVE_FACE_SYMMETRY;
-    scene.grid(1, {-24, half ? 0.0 : -24.0, -10}, {24, 24, 8}, faces)
+    scene.grid(1, {-10, half ? 0.0 : -8.0, -8}, {86, 8, 6}, faces)
         .numerics(shape, 0.4, {}, threads, transfer, order, {}, 3, {}, skip)
         .contact(method, detection, friction, normal);
     const ogive_material_id hard = scene.material("steel", steel()), soft = scene.material("aluminium", failing_aluminium());
     ogive_body_def ball = Scene::body(hard, {150, 0, -300});
     ball.formulation = formulation;
     scene.add("ball", ball, Scene::solid(OGIVE_SOLID_SPHERE, {-1, 0, 2.2}, {2, 0, 0}, 0.5));
-    scene.box("plate", soft, {-22, -22, -3}, {22, 22, 0}, 0.5, {0, 0, 0});
-    scene.box("backing", hard, {-22, -22, -5}, {22, 22, -3}, 0.5, {0, 0, 0});
+    scene.box("plate", soft, {-8, -6, -3}, {84, 6, 0}, 0.5, {0, 0, 0});
+    scene.box("backing", hard, {-8, -6, -5}, {84, 6, -3}, 0.5, {0, 0, 0});
   }
 };
 
 std::vector<Case> strikes() {
   std::vector<Case> cases;
-  const auto add = [&](const std::string& name, const Strike& strike) { cases.push_back({name, strike, 24, 0.2}); };
+  const auto add = [&](const std::string& name, const Strike& strike) { cases.push_back({name, strike, 20, 0.2, strike.half ? 2 : 1}); };
   static const char* const methods[] = {"SingleField",     "HuangFirst",      "HuangSecond", "York",      "HuChen",
                                         "Bardenhagen2000", "Bardenhagen2001", "Pan2008",     "Persistent"};
   for (std::int32_t method = 0; method < ogive_contact_method_count(); ++method) {
@@ -319,9 +338,9 @@ TEST(RestingParticles, AreWokenByAHostThatSetsTheirVelocityStressForceOrPlace) {
     for (std::size_t p = 0; p < positions.size() / 3; ++p) {
       const double speed = std::abs(velocity[3 * p]) + std::abs(velocity[3 * p + 1]) + std::abs(velocity[3 * p + 2]);
       if (positions[3 * p] > 119 && positions[3 * p] < 123) there = std::max(there, speed);
-      if (positions[3 * p] > 85 && positions[3 * p] < 90) between = std::max(between, speed);
+      if (positions[3 * p] > 70 && positions[3 * p] < 76) between = std::max(between, speed);
     }
-    if (set.moves) EXPECT_GT(there, 1e-3);
+    EXPECT_TRUE(!set.moves || there > 1e-3) << there;
     EXPECT_EQ(between, 0);
     EXPECT_GT(part_left_out(skipping), 0.2);
   }
