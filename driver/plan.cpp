@@ -25,6 +25,7 @@ class Planner {
     choose_cells();
     choose_dimensions();
     built_ = build_world(scene_);
+    decide("domain", true, "as the scene has it", "there are nodes only where material is: empty space costs neither time nor memory", "");
     choose_symmetry();
     say_formulations();
     say_coarse();
