@@ -76,13 +76,9 @@ RestingLaw try_law(const Model& model, const Workspace& workspace, int index) {
 // what is not a number moves.
 bool is_still(const BodyState& body, const Group& group, double speed, double stress, double inverse_cell) {
   const auto within = [&](const AlignedVector<double>& array, std::int64_t first, std::int64_t end, double limit) {
-    double largest = 0;
-    bool numbers = true;
-    for (std::int64_t i = first; i < end; ++i) {
-      largest = std::max(largest, std::abs(array[i]));
-      numbers = numbers && array[i] == array[i];
-    }
-    return numbers && largest <= limit;
+    std::int64_t beyond = 0;
+    for (std::int64_t i = first; i < end; ++i) beyond |= !(std::abs(array[i]) <= limit);
+    return beyond == 0;
   };
   const std::int64_t begin = group.begin, end = group.padded_end();
   for (std::int64_t p = begin; p < end; ++p)
