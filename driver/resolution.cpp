@@ -1,7 +1,7 @@
 // How fine the cells must be for a wanted error.
 //
 // The evidence is docs/data/resolution.csv, which tools/resolution_table.py writes from runs: of some scenes the error of a
-// result, against the limit of fine cells, by the number of cells across the thinnest body. The envelope of a series is the
+// result, against the limit of fine cells or else the finest run, by the number of cells across the thinnest body. The envelope of a series is the
 // largest error with as many cells or more; between two points it goes with a power of their number. All series must be
 // within the wanted error.
 #include "resolution.hpp"
@@ -36,7 +36,7 @@ const std::vector<std::vector<Point>>& envelopes() {
       std::vector<std::string> fields;
       std::istringstream row(line);
       for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
-      if (fields.size() >= 6) series[fields[0] + ',' + fields[1]].push_back({std::stod(fields[2]), std::abs(std::stod(fields[5]))});
+      if (fields.size() >= 6 && !fields[5].empty()) series[fields[0] + ',' + fields[1]].push_back({std::stod(fields[2]), std::abs(std::stod(fields[5]))});
     }
     std::vector<std::vector<Point>> result;
     for (auto& [name, points] : series) {

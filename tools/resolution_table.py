@@ -2,11 +2,12 @@
 """What error costs how many cells: runs scenes with finer and finer cells and writes what `accuracy` in a scene goes by.
 
   resolution_table.py [--program build/release/bin/ogive] [--work DIR] [--jobs N] [--only SCENE] [--table-only]
-  resolution_table.py --deliver [--program ...]      runs with accuracy = 10 %, 3 %, 1 % and their errors
+  resolution_table.py --deliver [--program ...]      runs with accuracy = 10 % and 3 %, and their errors
 
 Writes docs/data/resolution.csv, which the program carries, and the tables between the markers of docs/accuracy.md. The
 cells are counted across the thinnest body of the scene. The limit of fine cells is f0 of f0 + C h^p, by least squares over all
-cells of the series with p between 1/2 and 4; the error of a run is its distance from that limit. Particles shrink with
+cells of the series with p between 1/2 and 4; the error of a run is its distance from that limit. Where p is at one of these
+bounds no limit is claimed: the error is the distance from the finest run, whose own error is not known. Particles shrink with
 the cells. Runs in DIR that are finished are not run again.
 """
 
@@ -27,6 +28,7 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "resolution.csv")
 DELIVERED = os.path.join(ROOT, "docs", "data", "accuracy_delivered.csv")
 PAGE = os.path.join(ROOT, "docs", "accuracy.md")
+ACCURACIES = ("10%", "3%")  # finer than the worst of the series allows is refused
 QUIET = ["output.particle_interval=0", "output.checkpoint_steps=0"]
 
 
@@ -74,7 +76,7 @@ def run(program, work, series, label, settings):
 
 
 def limit_of(cells, values):
-    """(f0, p) of the best f0 + C h^p."""
+    """(f0, p) of the best f0 + C h^p, None where there is none."""
     best = None
     for p in np.arange(0.5, 4.001, 0.01):
         matrix = np.stack([np.ones(len(cells)), np.asarray(cells) ** p], axis=1)
@@ -82,17 +84,20 @@ def limit_of(cells, values):
         misfit = float(np.sum((matrix @ solution - values) ** 2))
         if best is None or misfit < best[0]:
             best = misfit, float(solution[0]), float(p)
-    return best[1], best[2]
+    return (best[1], best[2]) if 0.5 < best[2] < 3.99 else None
 
 
 def rows_of(series, summaries):
     rows = []
     for result, (path, _) in series.results.items():
         values = [value_of(summaries[h], path) + edge(series, result, h / 2) for h in series.cells]
-        limit, order = limit_of(series.cells, values)
+        limit = limit_of(series.cells, values)
         for h, value in zip(series.cells, values):
+            known = limit or h != min(series.cells)
+            error = value / (limit[0] if limit else values[series.cells.index(min(series.cells))]) - 1
             rows.append({"scene": series.name, "result": result, "cells_across": f"{series.thinnest / h:.4g}", "cell": f"{h:g}",
-                         "value": f"{value:.6g}", "error": f"{value / limit - 1:.5f}", "limit": f"{limit:.6g}", "order": f"{order:.2f}",
+                         "value": f"{value:.6g}", "error": f"{error:.5f}" if known else "",
+                         "limit": f"{limit[0]:.6g}" if limit else "", "order": f"{limit[1]:.2f}" if limit else "",
                          "particles": summaries[h]["particles"],
                          "seconds": f"{summaries[h]['cpu_seconds']['stepping']:.3g}"})
     return rows
@@ -102,13 +107,18 @@ def by_name(name):
     return next(series for series in SERIES if series.name == name)
 
 
+def percent(error):
+    return f"{100 * float(error):+.2f} %" if error else "not known"
+
+
 def table(rows):
     lines = ["| scene, result | cells across the thinnest body | cell [mm] | value | error | limit (order) | processor time [s] |",
              "|---|---|---|---|---|---|---|"]
     for row in rows:
         series = by_name(row["scene"])
         lines.append(f"| {series.label}, {row['result']} | {row['cells_across']} | {row['cell']} | {row['value']} "
-                     f"{series.results[row['result']][1]} | {100 * float(row['error']):+.2f} % | {row['limit']} ({row['order']}) | "
+                     f"{series.results[row['result']][1]} | {percent(row['error'])} | "
+                     f"{row['limit'] + ' (' + row['order'] + ')' if row['limit'] else 'none; from the finest'} | "
                      f"{row['seconds']} |")
     return "\n".join(lines)
 
@@ -116,7 +126,7 @@ def table(rows):
 def delivered_rows(program, work, rows):
     out = []
     for series in SERIES:
-        for accuracy in ("10%", "3%", "1%"):
+        for accuracy in ACCURACIES:
             summary = run(program, work, series, "accuracy-" + accuracy.rstrip("%"), [f"accuracy={accuracy}"])
             decision = next(d for d in summary["plan"]["decisions"] if d["subject"] == "accuracy")["decision"]
             cell = float(re.match(r"cells of (\S+)", decision)[1])
@@ -125,7 +135,7 @@ def delivered_rows(program, work, rows):
                 value = value_of(summary, path) + edge(series, result, cell / 2)
                 finest = float(of[-1]["value"])
                 out.append({"scene": series.name, "result": result, "accuracy": accuracy, "cell": f"{cell:.4g}",
-                            "value": f"{value:.6g}", "error": f"{value / float(of[-1]['limit']) - 1:.5f}",
+                            "value": f"{value:.6g}", "error": f"{value / float(of[-1]['limit']) - 1:.5f}" if of[-1]["limit"] else "",
                             "from_finest": f"{value / finest - 1:.5f}", "seconds": f"{summary['cpu_seconds']['stepping']:.3g}"})
     return out
 
@@ -136,7 +146,7 @@ def delivered_table(rows):
     for row in rows:
         series = by_name(row["scene"])
         lines.append(f"| {series.label}, {row['result']} | {row['accuracy']} | {row['cell']} | {row['value']} "
-                     f"{series.results[row['result']][1]} | {100 * float(row['from_finest']):+.2f} % | {100 * float(row['error']):+.2f} % | "
+                     f"{series.results[row['result']][1]} | {percent(row['from_finest'])} | {percent(row['error'])} | "
                      f"{row['seconds']} |")
     return "\n".join(lines)
 
