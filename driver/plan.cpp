@@ -87,7 +87,7 @@ class Planner {
                              : std::string("time step factor 0.5")),
            brief(*cells) + " cells across \"" + thinnest.body + "\" (" + brief(thinnest.measure) + ' ' + scene_.units.length +
                "): with as many, the error of discretisation was at most " + brief(100 * error) +
-               " % in the studies; smaller factors changed results by less than the cells did (docs/accuracy.md)",
+               " % in the studies (docs/accuracy.md)",
            "leave accuracy out and give grid.cell_size");
   }
 

@@ -2,8 +2,8 @@
 //
 // The evidence is docs/data/resolution.csv, which tools/resolution_table.py writes from runs: of some scenes the error of a
 // result, against the limit of fine cells or else the finest run, by the number of cells across the thinnest body. The envelope of a series is the
-// largest error with as many cells or more; between two points it goes with a power of their number. All series must be
-// within the wanted error.
+// largest error with as many cells or more; between two points it goes with a power of their number where the series has an
+// order, else as at the coarser one. All series must be within the wanted error.
 #include "resolution.hpp"
 
 #include <ogive.h>
@@ -25,24 +25,33 @@ struct Point {
   double cells, error;
 };
 
-/// Of each series: the envelope, from few cells to many.
-const std::vector<std::vector<Point>>& envelopes() {
-  static const std::vector<std::vector<Point>> all = [] {
-    std::map<std::string, std::vector<Point>> series;
+/// The envelope of a series, from few cells to many.
+struct Series {
+  std::vector<Point> points;
+  bool has_order = false;  // its error goes with a power of the cells, so that it is known between them
+};
+
+const std::vector<Series>& envelopes() {
+  static const std::vector<Series> all = [] {
+    std::map<std::string, Series> series;
     std::istringstream lines{std::string(resolution_data)};
     std::string line;
-    std::getline(lines, line);  // scene,result,cells_across,cell,value,error
+    std::getline(lines, line);  // scene,result,cells_across,cell,value,error,limit,...
     while (std::getline(lines, line)) {
       std::vector<std::string> fields;
       std::istringstream row(line);
       for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
-      if (fields.size() >= 6 && !fields[5].empty()) series[fields[0] + ',' + fields[1]].push_back({std::stod(fields[2]), std::abs(std::stod(fields[5]))});
+      if (fields.size() < 7 || fields[5].empty()) continue;
+      Series& of = series[fields[0] + ',' + fields[1]];
+      of.points.push_back({std::stod(fields[2]), std::abs(std::stod(fields[5]))});
+      of.has_order = !fields[6].empty();
     }
-    std::vector<std::vector<Point>> result;
-    for (auto& [name, points] : series) {
+    std::vector<Series> result;
+    for (auto& [name, of] : series) {
+      std::vector<Point>& points = of.points;
       std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.cells < b.cells; });
       for (size_t i = points.size() - 1; i-- > 0;) points[i].error = std::max(points[i].error, points[i + 1].error);
-      result.push_back(points);
+      result.push_back(of);
     }
     return result;
   }();
@@ -113,12 +122,12 @@ Thinnest thinnest_body(const Scene& scene) {
 std::optional<double> cells_for(double error) {
   if (error < smallest_error()) return std::nullopt;
   double cells = 0;
-  for (const std::vector<Point>& points : envelopes()) {
+  for (const auto& [points, has_order] : envelopes()) {
     double needed = points.front().cells;
     for (size_t i = 0; i + 1 < points.size(); ++i) {
       if (points[i].error <= error) break;
       const Point &a = points[i], &b = points[i + 1];
-      needed = b.error > error ? b.cells
+      needed = b.error > error || !has_order ? b.cells
                                : a.cells * std::pow(b.cells / a.cells, std::log(a.error / error) / std::log(a.error / b.error));
     }
     cells = std::max(cells, needed);
@@ -128,13 +137,13 @@ std::optional<double> cells_for(double error) {
 
 std::optional<double> error_with(double cells) {
   double error = 0;
-  for (const std::vector<Point>& points : envelopes()) {
+  for (const auto& [points, has_order] : envelopes()) {
     if (cells < points.front().cells) return std::nullopt;
     size_t i = 0;
     while (i + 1 < points.size() && points[i + 1].cells <= cells) ++i;
     const Point& a = points[i];
     double here = a.error;
-    if (i + 1 < points.size() && a.error > points[i + 1].error)
+    if (has_order && i + 1 < points.size() && a.error > points[i + 1].error)
       here *= std::pow(cells / a.cells, std::log(points[i + 1].error / a.error) / std::log(points[i + 1].cells / a.cells));
     error = std::max(error, here);
   }
@@ -143,7 +152,7 @@ std::optional<double> error_with(double cells) {
 
 double smallest_error() {
   double error = 0;
-  for (const std::vector<Point>& points : envelopes()) error = std::max(error, points.back().error);
+  for (const Series& series : envelopes()) error = std::max(error, series.points.back().error);
   return error;
 }
 
