@@ -187,6 +187,7 @@ class Planner {
     if (settings.empty()) return;
     apply(settings, "plan (symmetry = \"auto\")");
     read();
+    built_ = {};  // not both in memory
     built_ = build_world(scene_);
   }
 
