@@ -90,7 +90,7 @@ const std::vector<WrongInput> kWrongInputs = {
     {"skip_resting_as_a_number",
      {},
      {"--set", "numerics.skip_resting=2"},
-     {"--set numerics.skip_resting=2: numerics.skip_resting: must be true or false, got a"}},
+     {"--set numerics.skip_resting=2: numerics.skip_resting: must be true or false, got the number 2"}},
     {"bad_set_path",
      {},
      {"--set", "contact.methd=huang_first"},
