@@ -33,6 +33,38 @@ class Builder {
     return std::move(notes_);
   }
 
+  ParticleList particles_of(const BodyScene& body) {
+    const std::string path = "bodies." + body.name;
+    if (std::holds_alternative<MeshShape>(body.shape)) return mesh_of(body, path).particles;
+    ParticleList particles;
+    int64_t count = 0;
+    const auto make_room = [&] {
+      particles.positions.resize(static_cast<size_t>(3 * count));
+      particles.volumes.resize(static_cast<size_t>(count));
+    };
+    set_grid();
+    if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
+      const ogive_solid_def shape = solid_def(*solid);
+      require(ogive_solid_particles(world_, &shape, &count, nullptr, nullptr), path);
+      make_room();
+      require(ogive_solid_particles(world_, &shape, &count, particles.positions.data(), particles.volumes.data()), path);
+      return particles;
+    }
+    // A file is read by adding it, to a world of its own.
+    for (const MaterialScene& material : scene_.materials) add_material(material);
+    BodyScene alone = body;
+    alone.formulation = OGIVE_FORMULATION_DEFORMABLE;
+    alone.motion.clear();
+    alone.coarse.reset();
+    add_body(alone);
+    prepare();
+    count = body_result_of(world_, 0).particles;
+    make_room();
+    require(ogive_field_get(world_, ogive_body_id{0}, "position", particles.positions.data(), 3 * count), path);
+    require(ogive_field_get(world_, ogive_body_id{0}, "volume", particles.volumes.data(), count), path);
+    return particles;
+  }
+
   void change(const Scene& before) {
     for (size_t i = 0; i < scene_.materials.size(); ++i) material_ids_.push_back({static_cast<int32_t>(i)});
     for (size_t i = 0; i < scene_.bodies.size(); ++i) body_ids_.push_back({static_cast<int32_t>(i)});
@@ -139,6 +171,19 @@ class Builder {
     material_ids_.push_back(id);
   }
 
+  static ogive_solid_def solid_def(const SolidShape& solid) {
+    ogive_solid_def def;
+    ogive_solid_def_init(&def, sizeof def);
+    def.solid = solid.solid;
+    def.lattice = solid.lattice;
+    assign(def.size, solid.size);
+    assign(def.centre, solid.centre);
+    assign(def.axis, solid.axis);
+    assign(def.reference, solid.reference);
+    assign(def.spacing, solid.spacing);
+    return def;
+  }
+
   void add_body(const BodyScene& body) {
     const std::string path = "bodies." + body.name;
     ogive_body_def def;
@@ -159,15 +204,7 @@ class Builder {
     }
     ogive_body_id id{-1};
     if (const auto* solid = std::get_if<SolidShape>(&body.shape)) {
-      ogive_solid_def shape;
-      ogive_solid_def_init(&shape, sizeof shape);
-      shape.solid = solid->solid;
-      shape.lattice = solid->lattice;
-      assign(shape.size, solid->size);
-      assign(shape.centre, solid->centre);
-      assign(shape.axis, solid->axis);
-      assign(shape.reference, solid->reference);
-      assign(shape.spacing, solid->spacing);
+      const ogive_solid_def shape = solid_def(*solid);
       require(ogive_body_add_solid(world_, body.name.c_str(), &def, &shape, &id), path);
     } else if (const auto* file = std::get_if<ParticleFileShape>(&body.shape)) {
       require(ogive_body_add_particle_file(world_, body.name.c_str(), &def, file->file.c_str(), &id),
@@ -303,6 +340,11 @@ BuiltWorld build_world(const Scene& scene) {
   BuiltWorld built{make_world(), {}};
   built.notes = Builder(scene, built.world.get()).build();
   return built;
+}
+
+ParticleList body_particles(const Scene& scene, size_t body) {
+  const World world = make_world();
+  return Builder(scene, world.get()).particles_of(scene.bodies[body]);
 }
 
 std::vector<std::string> model_changes(const Scene& before, const Scene& after) {

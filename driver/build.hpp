@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "particle_csv.hpp"
 #include "scene.hpp"
 #include "world.hpp"
 
@@ -17,6 +18,10 @@ struct BuiltWorld {
 /// Adds everything in the scene and prepares the world. Whatever the engine refuses is said with its place in the
 /// scene.
 BuiltWorld build_world(const Scene& scene);
+
+/// The particles that a body of the scene is given, whole: before symmetry faces cut them, and all where it is `coarse`. Only what
+/// these need is made, no world of the whole scene.
+ParticleList body_particles(const Scene& scene, size_t body);
 
 /// What of the model differs between the scene of a run and another one that is to go on in its place: "numerics", "contact",
 /// "materials". Throws Failure(kExitInput) where it is something that the particles of the run stand on: units, grid, bodies,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "particle_csv.hpp"
 #include "scene.hpp"
@@ -20,5 +21,8 @@ struct FilledMesh {
 /// In a two-dimensional scene the section with z = 0. `place` begins every message. Throws Failure(kExitInput) for whatever is
 /// wrong with the mesh.
 FilledMesh fill_mesh(const MeshShape& shape, const GridScene& grid, const std::string& place);
+
+/// Its vertices where they lie in the scene, three coordinates each, without filling it.
+std::vector<double> mesh_vertices(const MeshShape& shape, const std::string& place);
 
 }  // namespace driver

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "scene.hpp"
-#include "world.hpp"
 
 namespace driver {
 
@@ -19,8 +18,8 @@ struct MirrorPlane {
 
 /// Looks for a plane across each axis of the model. A plane counts when every body is its own mirror image, particle by
 /// particle, and nothing moves, pulls or holds across it; two bodies that are each other's image do not count, because each
-/// would be bonded to its own image in the half model. `world` is that of the scene, not yet stepped.
-/// Where planes are only to be offered (`thorough` is false) some 50,000 particles of each body are compared, else all.
-std::vector<MirrorPlane> mirror_planes(const Scene& scene, const ogive_world* world, bool thorough);
+/// would be bonded to its own image in the half model. One body's particles at a time are in memory. Where planes
+/// are only to be offered (`thorough` is false) some 50,000 particles of each body are compared, else all.
+std::vector<MirrorPlane> mirror_planes(const Scene& scene, bool thorough);
 
 }  // namespace driver

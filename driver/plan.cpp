@@ -15,18 +15,17 @@
 namespace driver {
 namespace {
 
-std::string list_of(const Vector3& v) { return '[' + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) + ']'; }
-
 class Planner {
  public:
   Planner(Document document, std::filesystem::path file) : document_(std::move(document)), file_(std::move(file)) { read(); }
 
   PlannedScene plan() {
+    measures_ = smallest_measures(scene_);
     choose_cells();
     choose_dimensions();
-    built_ = build_world(scene_);
     decide("domain", true, "as the scene has it", "there are nodes only where material is: empty space costs neither time nor memory", "");
     choose_symmetry();
+    built_ = build_world(scene_);
     say_formulations();
     say_coarse();
     return {std::move(scene_), std::move(built_), std::move(decisions_)};
@@ -54,7 +53,7 @@ class Planner {
 
   void choose_cells() {
     if (!scene_.accuracy) {
-      const Thinnest thinnest = thinnest_body(scene_);
+      const Thinnest thinnest = thinnest_body(scene_, measures_);
       if (!std::isfinite(thinnest.measure)) return;
       const double cells = thinnest.measure / scene_.grid.cell_size;
       decide("cells", true, "the scene's, " + brief(scene_.grid.cell_size) + ' ' + scene_.units.length,
@@ -70,7 +69,7 @@ class Planner {
                                     " %; expected at least " + brief(100 * smallest_error()) +
                                     " %, or a cell size of your own and no accuracy");
     }
-    const Thinnest thinnest = thinnest_body(scene_);
+    const Thinnest thinnest = thinnest_body(scene_, measures_);
     const double before = scene_.grid.cell_size, cell = thinnest.measure / *cells;
     const std::string origin = "plan (accuracy = " + brief(100 * error) + " %)";
     // Where the size of cells is a parameter, what else hangs on it follows.
@@ -116,13 +115,13 @@ class Planner {
     if (!parameter.empty())
       apply({{"parameters." + parameter, shortest(wanted[0])}}, origin);
     else
-      apply({{path, list_of(wanted)}}, origin);
+      apply({{path, list_text(wanted)}}, origin);
     read();
     // A list of parameters, or one that others hang on as well.
     const Vector3 got = *spacing_of(scene_.bodies[index]);
     for (size_t c = 0; c < 3; ++c)
       if (std::abs(got[c] - wanted[c]) > 1e-9 * wanted[c]) {
-        apply({{path, list_of(wanted)}}, origin);
+        apply({{path, list_text(wanted)}}, origin);
         read();
         return;
       }
@@ -169,7 +168,7 @@ class Planner {
       return;
     }
     std::vector<Setting> settings;
-    for (const MirrorPlane& plane : mirror_planes(scene_, built_.world.get(), scene_.symmetry != SymmetryScene::offered)) {
+    for (const MirrorPlane& plane : mirror_planes(scene_, scene_.symmetry != SymmetryScene::offered)) {
       const std::string axis(1, "xyz"[plane.axis]);
       const std::string name = axis + " = " + brief(plane.at);
       const std::string subject = "symmetry in " + axis;
@@ -184,11 +183,8 @@ class Planner {
         decide(subject, true, "the half beyond " + name, plane.reason + off_the_nodes(plane), "symmetry = \"none\"");
       }
     }
-    if (settings.empty()) return;
     apply(settings, "plan (symmetry = \"auto\")");
-    read();
-    built_ = {};  // not both in memory
-    built_ = build_world(scene_);
+    if (!settings.empty()) read();
   }
 
   void take_half(const MirrorPlane& plane, std::vector<Setting>& settings) const {
@@ -353,9 +349,9 @@ class Planner {
       const bool deformable = target.formulation.value_or(OGIVE_FORMULATION_DEFORMABLE) == OGIVE_FORMULATION_DEFORMABLE;
       const BodyScene* const striker = striker_of(target);
       if (!deformable || !striker || target.velocity != Vector3{} || target.angular_velocity != Vector3{}) continue;
-      const double calibre = smallest_measure(*striker, scene_);
-      if (!std::isfinite(calibre)) continue;
       const auto striker_index = static_cast<int32_t>(striker - scene_.bodies.data());
+      const double calibre = measures_[static_cast<size_t>(striker_index)];
+      if (!std::isfinite(calibre)) continue;
       const CoarseScene coarse = far_from_path(*striker, striker_index, static_cast<int32_t>(b), kCalibres * calibre);
       const int64_t count = body_result_of(built_.world.get(), static_cast<int32_t>(b)).particles;
       std::vector<double> positions(static_cast<size_t>(3 * count));
@@ -368,7 +364,7 @@ class Planner {
              "they are more than " + brief(kCalibres) + " calibres (" + brief(coarse.beyond) + ' ' + scene_.units.length + ") from the path of \"" +
                  striker->name + "\": as far off, results changed by less than 0.1 % (docs/performance.md); not where that body shall tear or be "
                  "hit by debris",
-             key + " = { beyond = " + shortest(coarse.beyond) + ", from = " + list_of(coarse.from) + ", to = " + list_of(coarse.to) + " }");
+             key + " = { beyond = " + shortest(coarse.beyond) + ", from = " + list_text(coarse.from) + ", to = " + list_text(coarse.to) + " }");
     }
   }
 
@@ -402,6 +398,7 @@ class Planner {
   Document document_;
   std::filesystem::path file_;
   Scene scene_;
+  std::vector<double> measures_;  // of the bodies, as the scene gives them
   BuiltWorld built_;
   std::vector<Decision> decisions_;
 };

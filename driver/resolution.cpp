@@ -85,11 +85,9 @@ double smallest_extent(const std::vector<double>& points, const Vector3& axis) {
   return extent;
 }
 
-}  // namespace
-
 double smallest_measure(const BodyScene& body, const Scene& scene) {
   if (const auto* mesh = std::get_if<MeshShape>(&body.shape))
-    return smallest_extent(fill_mesh(*mesh, scene.grid, scene.place("bodies." + body.name + ".mesh")).vertices, mesh->axis);
+    return smallest_extent(mesh_vertices(*mesh, scene.place("bodies." + body.name + ".mesh")), mesh->axis);
   const auto* solid = std::get_if<SolidShape>(&body.shape);
   if (!solid) return std::numeric_limits<double>::infinity();  // particles of a file, which cannot be made finer anyway
   const Vector3& size = solid->size;
@@ -105,16 +103,23 @@ double smallest_measure(const BodyScene& body, const Scene& scene) {
   }
 }
 
-Thinnest thinnest_body(const Scene& scene) {
+}  // namespace
+
+std::vector<double> smallest_measures(const Scene& scene) {
+  std::vector<double> measures;
+  for (const BodyScene& body : scene.bodies) measures.push_back(smallest_measure(body, scene));
+  return measures;
+}
+
+Thinnest thinnest_body(const Scene& scene, const std::vector<double>& measures) {
   const auto rigid = [](const BodyScene& body) {
     return body.formulation == OGIVE_FORMULATION_RIGID_FREE || body.formulation == OGIVE_FORMULATION_RIGID_PRESCRIBED;
   };
   const bool all_rigid = std::all_of(scene.bodies.begin(), scene.bodies.end(), rigid);
   Thinnest thinnest{"", std::numeric_limits<double>::infinity()};
-  for (const BodyScene& body : scene.bodies) {
-    if (rigid(body) && !all_rigid) continue;
-    const double measure = smallest_measure(body, scene);
-    if (measure < thinnest.measure || thinnest.body.empty()) thinnest = {body.name, measure};
+  for (size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (rigid(scene.bodies[i]) && !all_rigid) continue;
+    if (measures[i] < thinnest.measure || thinnest.body.empty()) thinnest = {scene.bodies[i].name, measures[i]};
   }
   return thinnest;
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene.hpp"
 
@@ -14,11 +15,11 @@ struct Thinnest {
   double measure = 0;  // in the scene's unit of length
 };
 
-/// Of one body; infinite where it is not known (particles of a file).
-double smallest_measure(const BodyScene& body, const Scene& scene);
+/// Of each body, in the scene's order; infinite where it is not known (particles of a file). Meshes are read.
+std::vector<double> smallest_measures(const Scene& scene);
 
-/// Among bodies that deform, or among all if none does. Meshes are read.
-Thinnest thinnest_body(const Scene& scene);
+/// Among bodies that deform, or among all if none does.
+Thinnest thinnest_body(const Scene& scene, const std::vector<double>& measures);
 
 /// Cells across the thinnest body at which every study's error is at most `error` (0.03: 3 %); none if no study is so good.
 std::optional<double> cells_for(double error);

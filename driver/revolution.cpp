@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kTolerance = 1e-9;
 
-std::string list(double a, double b, double c) {
-  return '[' + shortest(a) + ", " + shortest(b) + ", " + shortest(c) + ']';
-}
-
 /// One axis of the model, and the scene looked at from it.
 class Axis {
  public:
@@ -43,7 +39,7 @@ class Axis {
     const double length = std::hypot(direction[0], direction[1], direction[2]);
     return std::abs(direction[across_[0]]) <= kTolerance * length && std::abs(direction[across_[1]]) <= kTolerance * length;
   }
-  std::string in_plane(const Vector3& along) const { return list(0, along[along_], 0); }
+  std::string in_plane(const Vector3& along) const { return list_text({0, along[along_], 0}); }
 
   std::string bodies() {
     for (const BodyScene& body : scene_.bodies) {
@@ -59,12 +55,12 @@ class Axis {
       const std::string shape = path + '.' + solid->kind;
       const bool sphere = solid->solid == OGIVE_SOLID_SPHERE;
       set(shape + ".centre", in_plane(solid->centre));
-      set(shape + ".axis", sphere ? "[0, 0, 1]" : list(0, solid->axis[along_] > 0 ? 1 : -1, 0));
+      set(shape + ".axis", sphere ? "[0, 0, 1]" : list_text({0, solid->axis[along_] > 0 ? 1.0 : -1.0, 0}));
       set(shape + ".reference", "[0, 0, 0]");
       if (solid->lattice != OGIVE_LATTICE_CARTESIAN) set(path + ".lattice", "cartesian");
       if (sphere) {
         const double across = solid->spacing[across_[0]], along = solid->spacing[along_];
-        set(path + ".spacing", list(across, along, across));
+        set(path + ".spacing", list_text({across, along, across}));
       }
       const std::string problem = motion(body, path);
       if (!problem.empty()) return name + problem;
@@ -106,8 +102,8 @@ class Axis {
         reach = std::max(reach, distance);
       }
     set("grid.space", "axisymmetric");
-    set("grid.lower", list(0, grid.lower[along_], 0));
-    set("grid.upper", list(reach, grid.upper[along_], 0));
+    set("grid.lower", list_text({0, grid.lower[along_], 0}));
+    set("grid.upper", list_text({reach, grid.upper[along_], 0}));
     const int32_t faces[4] = {OGIVE_FACE_FREE, outside < 0 ? OGIVE_FACE_FREE : outside, grid.faces[2 * along_],
                               grid.faces[2 * along_ + 1]};
     static const char* const names[4] = {"x_min", "x_max", "y_min", "y_max"};
@@ -124,7 +120,7 @@ class Axis {
     for (size_t i = 0; i < scene_.walls.size(); ++i) {
       if (!is_along(scene_.walls[i].normal)) return "wall " + std::to_string(i) + " does not lie across the axis";
       set("walls." + std::to_string(i) + ".point", in_plane(scene_.walls[i].point));
-      set("walls." + std::to_string(i) + ".normal", list(0, scene_.walls[i].normal[along_] > 0 ? 1 : -1, 0));
+      set("walls." + std::to_string(i) + ".normal", list_text({0, scene_.walls[i].normal[along_] > 0 ? 1.0 : -1.0, 0}));
     }
     return "";
   }
@@ -140,8 +136,8 @@ class Axis {
       for (size_t i = 0; i < 2; ++i)
         if (clamp.a[across_[i]] > scene_.grid.lower[across_[i]] || clamp.b[across_[i]] < scene_.grid.upper[across_[i]])
           return name + "does not reach across all of the domain";
-      set(path + ".lower", list(0, clamp.a[along_], 0));
-      set(path + ".upper", list(reach_, clamp.b[along_], 0));
+      set(path + ".lower", list_text({0, clamp.a[along_], 0}));
+      set(path + ".upper", list_text({reach_, clamp.b[along_], 0}));
     }
     const bool first = clamp.axes >> across_[0] & 1, second = clamp.axes >> across_[1] & 1;
     if (first != second) return name + "holds one of the directions across the axis alone";

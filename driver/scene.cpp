@@ -164,7 +164,7 @@ NumericsScene read_numerics(const Section& root) {
   numerics.energy_warning = section->optional_number("energy_warning", kPositive);
   numerics.energy_limit = section->optional_number("energy_limit", kPositive);
   numerics.drop_debris = section->optional_flag("drop_debris");
-  if (const auto skip = section->optional_flag("skip_resting")) numerics.skip_resting = *skip ? 1 : 0;
+  numerics.skip_resting = section->optional_flag("skip_resting");
   if (const auto threads = section->optional_integer("threads", 0, 1024)) {
     numerics.threads = static_cast<int32_t>(*threads);
   }

@@ -40,8 +40,7 @@ struct NumericsScene {
   std::optional<double> pic_fraction;
   std::optional<int32_t> xpic_order;
   std::optional<double> energy_warning, energy_limit;
-  std::optional<bool> drop_debris;
-  std::optional<int32_t> skip_resting;
+  std::optional<bool> drop_debris, skip_resting;
 
   bool operator==(const NumericsScene&) const = default;
 };

@@ -76,6 +76,10 @@ std::string bytes(int64_t count) {
   return formatted("%.2f GB", value / 1e9);
 }
 
+std::string list_text(const std::array<double, 3>& values) {
+  return '[' + shortest(values[0]) + ", " + shortest(values[1]) + ", " + shortest(values[2]) + ']';
+}
+
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;

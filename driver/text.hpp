@@ -1,6 +1,7 @@
 // Text for people: numbers, durations, sizes, and the nearest known word to a misspelt one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@ std::string grouped(int64_t value);
 std::string duration(double seconds);
 /// "1.23 GB".
 std::string bytes(int64_t count);
+/// "[1, 0.5, 0]", as --set reads it.
+std::string list_text(const std::array<double, 3>& values);
 /// "a, b, c".
 std::string joined(const std::vector<std::string>& words);
 

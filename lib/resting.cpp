@@ -68,7 +68,7 @@ RestingLaw try_law(const Model& model, const Workspace& workspace, int index) {
   };
   const auto was = arrays_of(before), is = arrays_of(body);
   for (std::size_t i = 0; i < was.size(); ++i)
-    law.keeps = law.keeps && std::memcmp(was[i]->data(), is[i]->data(), was[i]->size() * sizeof(double)) == 0;
+    law.keeps = law.keeps && (was[i]->empty() || std::memcmp(was[i]->data(), is[i]->data(), was[i]->size() * sizeof(double)) == 0);
   return law;
 }
 

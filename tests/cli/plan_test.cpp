@@ -133,6 +133,13 @@ TEST_F(Plan, HalfIsRefusedIfOneDetailIsNotTheSameOnBothSides) {
   }
 }
 
+TEST_F(Plan, CoarseOnOneSideKeepsTheWhole) {
+  EXPECT_NE(decision("symmetry in y", {"symmetry=auto", "bodies.left.coarse={beyond=1,from=[-1,1,0]}"}).find("not coarse in the same way"),
+            std::string::npos);
+  EXPECT_EQ(decision("symmetry in y", {"symmetry=auto", "bodies.left.coarse={beyond=1,from=[-1,1,0],to=[-1,-1,0]}"}).rfind("the half beyond", 0),
+            0U);
+}
+
 TEST_F(Plan, ClampsThatAreEachOthersImageAllowTheHalf) {
   const std::string both =
       "clamps=[{region=\"box\",lower=[3,1,-4],upper=[5,4,4]},{region=\"box\",lower=[3,-4,-4],upper=[5,-1,4]}]";
@@ -284,6 +291,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PlanOfExample,
                          testing::Values("beam_on_cylinder/scene.toml", "cylinder_on_beam/scene.toml", "four_spheres/scene.toml",
                                          "rings/scene.toml", "rolling_cylinder/scene.toml", "rolling_sphere/scene.toml",
                                          "steel_ball/scene.toml", "steel_ball/axisymmetric.toml", "taylor_copper/scene.toml",
-                                         "taylor_copper/axisymmetric.toml", "thick_plate/scene.toml", "two_spheres/scene.toml"));
+                                         "taylor_copper/axisymmetric.toml", "thick_plate/scene.toml", "thick_target/scene.toml",
+                                         "two_spheres/scene.toml"));
 
 }  // namespace
