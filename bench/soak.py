@@ -169,6 +169,9 @@ class Scene:
             self.say(f"{shape} = {{ {table}, {placement} }}")
             if shape == "cylinder" and self.chance(0.3):
                 self.value("lattice", "polar")
+        if formulation == "deformable" and self.added.random() < 0.2:
+            self.say(f"coarse = {{ beyond = {self.length(self.added.uniform(0.2, 3))}, from = {self.lengths(centre)}, "
+                     f"to = {self.lengths([0, 0, 0])} }}")
         if motion:
             for k in range(r.randint(1, 3)):
                 self.say(f"[[bodies.{name}.motion]]")

@@ -499,23 +499,26 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   const auto group_of = [&](const GroupLinks& link) -> const Group& {
     return workspace.particles_of(state, link.body).groups[link.group];
   };
-  const auto pencil_order = [&](const GroupLinks& link) {
+  const auto pencil_of = [&](const GroupLinks& link) {
     const auto& block = group_of(link).block;
-    const std::int32_t colour = (block[2] & 1) * 2 + (block[1] & 1);
-    return std::array<std::int32_t, 5>{colour, block[2], block[1], link.body, block[0]};
+    return Schedule::Place{block[2], block[1]};
+  };
+  const auto order_of = [&](const GroupLinks& link) {
+    return std::pair(pencil_of(link), std::pair(link.body, group_of(link).block[0]));
   };
   std::sort(workspace.links.begin(), workspace.links.end(),
-            [&](const GroupLinks& a, const GroupLinks& b) { return pencil_order(a) < pencil_order(b); });
+            [&](const GroupLinks& a, const GroupLinks& b) { return order_of(a) < order_of(b); });
   workspace.pencils.clear();
-  workspace.colour.fill(0);
+  std::vector<Schedule::Place> places;
   for (std::int32_t i = 0, n = static_cast<std::int32_t>(workspace.links.size()); i < n;) {
-    const auto first = pencil_order(workspace.links[i]);
+    const Schedule::Place place = pencil_of(workspace.links[i]);
     std::int32_t end = i + 1;
-    while (end < n && std::equal(first.begin(), first.begin() + 3, pencil_order(workspace.links[end]).begin())) ++end;
+    while (end < n && pencil_of(workspace.links[end]) == place) ++end;
     workspace.pencils.push_back({i, end});
-    for (int c = first[0] + 1; c <= 4; ++c) workspace.colour[c] = static_cast<std::int32_t>(workspace.pencils.size());
+    places.push_back(place);
     i = end;
   }
+  workspace.schedule.set_pencils(places);
 
   // Slots: the neighbour blocks that each group's tile reaches.
   const auto for_reached = [&](const GroupLinks& link, auto&& visit) {
@@ -628,7 +631,27 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
       workspace.displacement[b].resize(4 * static_cast<std::size_t>(state.bodies[b].padded));
   workspace.resting.stale = true;
   workspace.resting.skipping = false;
+  share_out(state, workspace);
   workspace.linked = true;
+}
+
+void share_out(const State& state, Workspace& workspace) {
+  std::vector<std::int64_t> particles;
+  for (const Pencil& pencil : workspace.pencils) {
+    std::int64_t count = 0;
+    for (std::int32_t l = pencil.begin; l < pencil.end; ++l) {
+      const GroupLinks& link = workspace.links[l];
+      if (!link.skipped) count += workspace.particles_of(state, link.body).groups[link.group].count;
+    }
+    particles.push_back(count);
+  }
+  workspace.schedule.divide(workspace.threads, particles);
+  std::vector<std::int32_t> part, rank;
+  for (const Slot& slot : workspace.slots) {
+    part.push_back(workspace.schedule.part_of({slot.block[2], slot.block[1]}));
+    rank.push_back(static_cast<std::int32_t>(rank.size()));
+  }
+  workspace.slot_parts.assign(workspace.threads, part, rank, 8);
 }
 
 KernelGroup kernel_group(const Model&, const State&, Workspace& workspace, const GroupLinks& link, double dt) {
@@ -693,7 +716,7 @@ std::int64_t Workspace::memory_bytes() const {
   std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(contact_stress) + bytes(occupied) +
                        bytes(filter) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
-                       bytes(driven) + bytes(load_sums);
+                       bytes(driven) + bytes(load_sums) + schedule.memory_bytes() + slot_parts.memory_bytes();
   for (const BlockContacts& block : block_contacts) total += bytes(block.fields) + bytes(block.pairs) + bytes(block.nodes);
   for (const PlacedSurface& placed : surfaces) total += placed.surface.memory_bytes();
   total += points.memory_bytes();

@@ -18,6 +18,7 @@
 #include "lagrangian/contact.hpp"
 #include "model.hpp"
 #include "rigid/rigid_motion.hpp"
+#include "schedule.hpp"
 #include "state.hpp"
 #include "transfer/kernels.hpp"
 
@@ -60,8 +61,7 @@ struct GroupLinks {
   bool skipped = false;  // at rest and far from what moves: the step leaves it out
 };
 
-// Groups of all bodies in one row of blocks along x: worked on by one thread, in order. Pencils of one of the four colours
-// (y and z block coordinates even or odd) touch no common node, so that they run in any order with the same bits.
+// Groups of all bodies in one row of blocks along x: worked on by one thread, in order. schedule.hpp says when.
 struct Pencil {
   std::int32_t begin = 0, end = 0;  // in Workspace::links
 };
@@ -148,10 +148,11 @@ struct Workspace {
   AlignedVector<ContactRecord> contacts;  // 64 a slot that has them
   AlignedVector<ContactStress> contact_stress;  // likewise, where a contact method asks for it
   std::vector<std::uint8_t> occupied;     // likewise: which of a node's eight cells hold particles
-  std::vector<GroupLinks> links;          // ordered by colour, pencil, body, block x
+  std::vector<GroupLinks> links;          // ordered by pencil (z, y, x), body, block x
   std::vector<KernelGroup> kernel_groups; // what kernels are told of each link; all but the time step
   std::vector<Pencil> pencils;
-  std::array<std::int32_t, 5> colour{};   // first pencil of each colour, and the end
+  Schedule schedule;                      // of the pencils
+  Parts slot_parts;                       // of the slots, near the pencils of the same thread
   std::vector<MixedBlock> mixed;
   std::vector<FaceNodes> faces;
   std::vector<ClampNode> clamps;
@@ -216,6 +217,9 @@ void drop_groups(const Model& model, State& state, Workspace& workspace, int bod
 
 // Brings the copy of a total Lagrangian body to what its particles are now.
 void fill_copy(State& state, int body);
+
+// Divides pencils and slots among the threads by the particles that are computed.
+void share_out(const State& state, Workspace& workspace);
 
 // Slots, links, pencils, mixed blocks, face and clamp nodes for the groups as they are.
 void link_grid(const Model& model, const State& state, Workspace& workspace);

@@ -10,22 +10,29 @@
 
 namespace ogive {
 
-// Runs work(link, index) over all groups but those at rest that the step leaves out, colour by colour: the groups of one colour
-// write to disjoint nodes.
+// Runs work(link, index) over all groups but those at rest that the step leaves out; those that write to common nodes one after
+// the other, always in the same order.
 template <class Work>
-void for_coloured_groups(Workspace& workspace, Work&& work) {
-  for (int colour = 0; colour < 4; ++colour) {
-    for_each_in_turn(workspace.threads, workspace.colour[colour], workspace.colour[colour + 1], [&](std::int64_t p) {
-      for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l)
-        if (!workspace.links[l].skipped) work(workspace.links[l], l);
-    });
-  }
+void for_groups_in_order(Workspace& workspace, Work&& work) {
+  workspace.schedule.for_each_in_order([&](std::int32_t p) {
+    for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l)
+      if (!workspace.links[l].skipped) work(workspace.links[l], l);
+  });
+}
+
+// The same in any order.
+template <class Work>
+void for_groups(Workspace& workspace, Work&& work) {
+  workspace.schedule.for_each([&](std::int32_t p) {
+    for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l)
+      if (!workspace.links[l].skipped) work(workspace.links[l], l);
+  });
 }
 
 // Runs work(node) over all nodes in use, but those of idle slots.
 template <class Work>
 void for_nodes(Workspace& workspace, Work&& work) {
-  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+  workspace.slot_parts.for_each([&](std::int64_t s) {
     if (workspace.slots[s].idle) return;
     for (std::int64_t i = s * block_nodes; i < s * block_nodes + workspace.nodes_in_use; ++i) work(i);
   });

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "parallel.hpp"
+#include "phases.hpp"
 #include "simd/subnormals.hpp"
 
 namespace ogive {
@@ -267,7 +268,10 @@ void choose_groups(const Model& model, const State& state, Workspace& workspace)
   resting.groups = resting.skipped_particles = 0;
   for (const GroupLinks& link : workspace.links) resting.groups += rests(state, workspace, link);
   if (resting.groups == 0 || !model.numerics.skip_resting) {
-    if (resting.skipping) leave_nothing_out(workspace);
+    if (resting.skipping) {
+      leave_nothing_out(workspace);
+      share_out(state, workspace);
+    }
     return;
   }
 
@@ -299,6 +303,7 @@ void choose_groups(const Model& model, const State& state, Workspace& workspace)
     workspace.stress_sums[l].bad_particle = -1;
     workspace.stress_sums[l].fastest = resting.laws[link.body].fastest;
   }
+  share_out(state, workspace);
 }
 
 void keep_resting(const Model& model, State& state, Workspace& workspace) {
@@ -308,9 +313,8 @@ void keep_resting(const Model& model, State& state, Workspace& workspace) {
   for (const BodyState& body : state.bodies)
     fastest = std::max({fastest, body.totals.maximum_speed, body.totals.maximum_speed_ever});
   const double speed = least_motion * fastest;
-  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.links.size()), [&](std::int64_t l) {
-    const GroupLinks& link = workspace.links[l];
-    if (link.skipped || !rests(state, workspace, link)) return;
+  for_groups(workspace, [&](const GroupLinks& link, std::int32_t l) {
+    if (!rests(state, workspace, link)) return;
     BodyState& body = state.bodies[link.body];
     Group& group = body.groups[link.group];
     const double impedance = model.material_of(link.body).density * resting.laws[link.body].fastest;

@@ -56,6 +56,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   if (debris_is_due(model, state)) drop_debris(model, state, workspace);
   if (!workspace.linked) link_grid(model, state, workspace);     // the grid follows the material
   choose_groups(model, state, workspace);                        // nothing has happened to the others
+  if (workspace.schedule.threads() != workspace.threads) share_out(state, workspace);
   allocate_load_sums(model, state, workspace);
 
   clear_grid(workspace);
@@ -136,7 +137,7 @@ KernelParticles particles_of(State& state, Workspace& workspace, const GroupLink
 }
 
 void clear_grid(Workspace& workspace) {
-  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+  workspace.slot_parts.for_each([&](std::int64_t s) {
     if (workspace.slots[s].idle) return;
     // Sizes that the compiler knows take no call.
     void* const first = &workspace.nodes[s * block_nodes];
@@ -155,7 +156,7 @@ void clear_contacts(Workspace& workspace) {
 
 void map_mass_and_momentum(const Model& model, State& state, Workspace& workspace) {
   const auto& maps = workspace.kernels->map_momentum[static_cast<int>(model.numerics.shape_function)];
-  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+  for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t) {
     if (link.guided && !link.contact) return;  // only contact asks for a rigid body's nodes
     const auto map = maps[model.numerics.affine() && !link.guided];
     map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link));
@@ -165,7 +166,7 @@ void map_mass_and_momentum(const Model& model, State& state, Workspace& workspac
 void map_contact_sums(const Model& model, State& state, Workspace& workspace) {
   if (workspace.contacts.empty()) return;
   const auto map = workspace.kernels->map_contact[static_cast<int>(model.numerics.shape_function)];
-  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+  for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t) {
     if (link.contact) map(kernel_group(model, state, workspace, link, 0), particles_of(state, workspace, link));
     if (link.contact && workspace.contact_needs.occupied) mark_occupied(model, state, workspace, link);
   });
@@ -178,7 +179,7 @@ void map_contact_stress(const Model& model, State& state, Workspace& workspace) 
   std::memset(static_cast<void*>(workspace.contact_stress.data()), 0,
               workspace.contact_stress.size() * sizeof(ContactStress));
   const auto map = workspace.kernels->optional->map_contact_stress[static_cast<int>(model.numerics.shape_function)];
-  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+  for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t) {
     if (!link.contact || workspace.particles_of(state, link.body).stress[0].empty()) return;
     ContactStress* nodes[27];
     for (int i = 0; i < 27; ++i) {
@@ -208,7 +209,7 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
   unfold_filter(workspace);
   const auto pass = workspace.kernels->optional->filter_velocity[static_cast<int>(model.numerics.shape_function)];
   for (int r = 1; r < model.numerics.xpic_order; ++r) {
-    for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+    for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t) {
       if (link.guided) return;
       const auto filter = filter_of(workspace, link);
       NodeRecord* nodes[27];
@@ -265,7 +266,7 @@ void nodal_velocities(Workspace& workspace) {
 
 void map_internal_force(const Model& model, State& state, Workspace& workspace, double dt) {
   const auto map = workspace.kernels->map_internal_force[static_cast<int>(model.numerics.shape_function)];
-  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t) {
+  for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t) {
     if (link.guided) return;
     map(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link));
   });
@@ -273,7 +274,7 @@ void map_internal_force(const Model& model, State& state, Workspace& workspace, 
 
 void update_stress(const Model& model, State& state, Workspace& workspace, double dt) {
   const int shape = static_cast<int>(model.numerics.shape_function);
-  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
+  for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t index) {
     if (link.guided) return;
     const Material& material = model.material_of(link.body);
     workspace.kernels->update_stress[shape][static_cast<int>(material.strength)][static_cast<int>(material.eos)](
@@ -306,14 +307,14 @@ bool any_loads(const Model& model, const State& state) {
 void map_external_force(const Model& model, State& state, Workspace& workspace) {
   for (LoadState& load : state.loads) load.force = {};
   if (!any_loads(model, state)) return;
-  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
+  for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t index) {
     if (!link.guided && particles_loaded(model, state, link.body)) map_loads(model, state, workspace, index);
   });
 }
 
 void measure_external_force(const Model& model, State& state, Workspace& workspace, double dt) {
   if (!any_loads(model, state)) return;
-  for_coloured_groups(workspace, [&](const GroupLinks& link, std::int32_t index) {
+  for_groups_in_order(workspace, [&](const GroupLinks& link, std::int32_t index) {
     if (!link.guided && particles_loaded(model, state, link.body)) measure_loads(model, state, workspace, index, dt);
   });
   book_loads(model, state, workspace, dt);
@@ -329,7 +330,7 @@ void measure_external_force(const Model& model, State& state, Workspace& workspa
 // The first sum is booked here, those over particles in the next phase.
 void accelerations(State& state, Workspace& workspace, double dt) {
   const double inverse = 1.0 / dt;
-  for_each_in_parts(workspace.threads, 0, static_cast<std::int64_t>(workspace.slots.size()), [&](std::int64_t s) {
+  workspace.slot_parts.for_each([&](std::int64_t s) {
     double given = 0;
     workspace.slot_given[s] = 0;
     if (workspace.slots[s].guided() || workspace.slots[s].idle) return;
@@ -353,22 +354,18 @@ void update_velocity_and_position(const Model& model, State& state, Workspace& w
   const bool xpic = model.numerics.transfer == Transfer::Xpic;
   const auto update = workspace.kernels->update_particles[shape][model.numerics.affine()];
   const auto update_xpic = workspace.kernels->optional->update_particles_xpic[shape];
-  for_each_in_turn(workspace.threads, 0, static_cast<std::int64_t>(workspace.pencils.size()), [&](std::int64_t p) {
-    for (std::int32_t l = workspace.pencils[p].begin; l < workspace.pencils[p].end; ++l) {
-      const GroupLinks& link = workspace.links[l];
-      workspace.move_sums[l] = {};
-      if (link.guided || link.skipped) continue;
-      if (xpic) {
-        const auto filter = filter_of(workspace, link);
-        NodeRecord* nodes[27];
-        std::copy(filter.begin(), filter.end(), nodes);
-        update_xpic(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), nodes,
-                    workspace.move_sums[l]);
-        continue;
-      }
-      update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link),
-             workspace.move_sums[l]);
+  std::fill(workspace.move_sums.begin(), workspace.move_sums.end(), MoveSums{});
+  for_groups(workspace, [&](const GroupLinks& link, std::int32_t l) {
+    if (link.guided) return;
+    if (xpic) {
+      const auto filter = filter_of(workspace, link);
+      NodeRecord* nodes[27];
+      std::copy(filter.begin(), filter.end(), nodes);
+      update_xpic(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), nodes,
+                  workspace.move_sums[l]);
+      return;
     }
+    update(kernel_group(model, state, workspace, link, dt), particles_of(state, workspace, link), workspace.move_sums[l]);
   });
   for (BodyState& body : state.bodies) body.totals.maximum_speed = 0;
   for (std::size_t l = 0; l < workspace.links.size(); ++l) {

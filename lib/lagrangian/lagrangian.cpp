@@ -33,7 +33,7 @@ double kick_time(const State& state, double dt) { return 0.5 * (state.last_time_
 // Calls work(node record, position, velocity and force in the state) for all nodes, one thread a slot.
 template <class Work>
 void for_state_nodes(State& state, Workspace& reference, Work&& work) {
-  for_each_in_parts(reference.threads, 0, static_cast<std::int64_t>(reference.slots.size()), [&](std::int64_t s) {
+  reference.slot_parts.for_each([&](std::int64_t s) {
     const Slot& slot = reference.slots[s];
     ReferenceState& of = state.bodies[slot.field].reference;
     for (std::size_t n = 0; n < block_nodes; ++n) {
@@ -289,7 +289,7 @@ void take_back_kept(const Model& model, State& state, Workspace& workspace) {
     const std::size_t at = static_cast<std::size_t>(&node - reference.nodes.data());
     for (int c = 0; c < 3; ++c) v[c] -= kept_at(reference.image[at], reference.image_signs[at], c);
   });
-  for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t) {
+  for_groups_in_order(reference, [&](const GroupLinks& link, std::int32_t) {
     BodyState& body = state.bodies[link.body];
     const Group& group = body.groups[link.group];
     for (std::int64_t p = group.begin; p < group.padded_end(); ++p)
@@ -361,7 +361,10 @@ void take_velocities(const Model& model, State& state, Workspace& workspace, int
 void kick_lagrangian(const Model& model, State& state, Workspace& workspace, double dt) {
   if (!workspace.reference_grid) return;
   Workspace& reference = *workspace.reference_grid;
-  reference.threads = workspace.threads;
+  if (reference.threads != workspace.threads) {
+    reference.threads = workspace.threads;
+    share_out(state, reference);
+  }
   const double kick = kick_time(state, dt);
   if (reference.faces.empty() && !loaded(model, state) && model.numerics.gravity == Vector3{}) {
     // The same as below in one pass.
@@ -388,7 +391,7 @@ void kick_lagrangian(const Model& model, State& state, Workspace& workspace, dou
                   });
   if (loaded(model, state)) {
     allocate_load_sums(model, state, reference);
-    for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t index) {
+    for_groups_in_order(reference, [&](const GroupLinks& link, std::int32_t index) {
       if (particles_loaded(model, state, link.body)) map_loads(model, state, reference, index);
     });
   }
@@ -449,7 +452,7 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
         node.v[c] = end;
       }
     });
-    for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t index) {
+    for_groups_in_order(reference, [&](const GroupLinks& link, std::int32_t index) {
       if (particles_loaded(model, state, link.body)) measure_loads(model, state, reference, index, kick);
     });
     book_loads(model, state, reference, kick);
@@ -470,7 +473,7 @@ void finish_lagrangian_step(const Model& model, State& state, Workspace& workspa
     for (double& c : force.f) c = 0;
   });
   const int shape = static_cast<int>(model.numerics.shape_function);
-  for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t index) {
+  for_groups_in_order(reference, [&](const GroupLinks& link, std::int32_t index) {
     const Material& material = model.material_of(link.body);
     NodeRecord* forces[27];
     for (int i = 0; i < 27; ++i)

@@ -33,7 +33,7 @@ void find_images(Workspace& reference) {
 void map_masses(const Model& model, State& state, Workspace& reference) {
   std::memset(static_cast<void*>(reference.nodes.data()), 0, reference.nodes.size() * sizeof(NodeRecord));
   const auto map = reference.kernels->map_momentum[static_cast<int>(model.numerics.shape_function)][0];
-  for_coloured_groups(reference, [&](const GroupLinks& link, std::int32_t) {
+  for_groups_in_order(reference, [&](const GroupLinks& link, std::int32_t) {
     KernelParticles particles = kernel_particles(state.bodies[link.body]);
     particles.position = state.bodies[link.body].reference.position.data();
     map(kernel_group(model, state, reference, link, 0), particles);

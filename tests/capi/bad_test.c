@@ -196,6 +196,15 @@ static void definitions(void) {
   BAD_SIZES(body, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL));
   WITH(body, material.index, 3, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "material");
   WITH(body, velocity[2], INFINITY, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "velocity");
+  WITH(body, coarse_beyond, -1, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "coarse_beyond");
+  WITH(body, coarse_beyond, NAN, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "coarse_beyond");
+  WITH(body, coarse_beyond, INFINITY, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "coarse_beyond");
+  WITH(body, coarse_from[1], NAN, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "coarse_from");
+  WITH(body, coarse_to[0], INFINITY, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "coarse_to");
+  body.coarse_beyond = 1;
+  WITH(body, formulation, OGIVE_FORMULATION_RIGID_FREE, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "coarse_beyond");
+  WITH(body, formulation, OGIVE_FORMULATION_TOTAL_LAGRANGIAN, ogive_body_add_particles(world, "pair", &body, 2, xyz, volume, NULL), "coarse_beyond");
+  body.coarse_beyond = 0;
 
   CHECK_REFUSED(world, ogive_body_add_solid(world, "box", &body, NULL, NULL), "solid");
   BAD_SIZES(box, ogive_body_add_solid(world, "box", &body, &box, NULL));

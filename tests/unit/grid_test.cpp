@@ -156,7 +156,7 @@ TEST(Grid, WhatAParticleCarriesGoesWithIt) {
 TEST(Grid, GroupsOfOneColourTouchNoCommonNodeUnlessTheyShareAPencil) {
   const World world({scattered(4000, {0, 10, 20}, 60), scattered(500, {30, 40, 50}, 20)});
   const Workspace& w = world.workspace;
-  for (int colour = 0; colour < 4; ++colour) {
+  for (int colour = 0; colour < colours; ++colour) {
     std::map<std::int64_t, std::int32_t> owner;  // node to pencil
     for (std::int32_t p = w.colour[colour]; p < w.colour[colour + 1]; ++p)
       for (std::int32_t l = w.pencils[p].begin; l < w.pencils[p].end; ++l) {
