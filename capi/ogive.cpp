@@ -122,7 +122,7 @@ const BodyAudit& audit_of(const ogive_world* world, int body) {
     world->audited_steps = world->state.steps;
   }
   std::optional<BodyAudit>& audit = world->audits[static_cast<std::size_t>(body)];
-  if (!audit) audit = audit_body(world->model, world->state, body);
+  if (!audit) audit = audit_body(world->model, world->state, body, world->workspace.threads);
   return *audit;
 }
 
@@ -1465,7 +1465,7 @@ static void step_or_break(ogive_world* world, double dt) {
     advance_one_step(world->model, world->state, world->workspace, dt);
     // The stop condition looks at every tenth step: one pass over its body costs next to nothing then.
     if (world->state.steps % 10 == 0) check_stop(world->model, world->state);
-    warned = watch_energy(world->model, world->state);
+    warned = watch_energy(world->model, world->state, world->workspace.threads);
   } catch (const std::bad_alloc&) {
     if (world->workspace.changing) world->stage = Stage::Broken;
     throw;
@@ -1579,7 +1579,7 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
                  full.transfer_dissipation - full.external_work - full.prescribed_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
-    const double growth = energy_growth(world->model, state);
+    const double growth = energy_growth(world->model, state, world->workspace.threads);
     const bool larger = growth > state.energy_watch.largest_growth;
     full.energy_growth = larger ? growth : state.energy_watch.largest_growth;
     full.energy_growth_time = larger ? state.time : state.energy_watch.largest_growth_time;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "parallel.hpp"
 
 namespace ogive {
 
@@ -24,69 +27,88 @@ Vector3 particle_angular_momentum(const BodyState& body, std::int64_t p, double 
   return sum;
 }
 
-BodyAudit audit_body(const Model& model, const State& state, int index) {
-  const BodyState& body = state.bodies[index];
+namespace {
+
+// The same of one group.
+BodyAudit audit_group(const Model& model, const BodyState& body, int index, const Group& group) {
   const double density = model.material_of(index).density;
   const Body& rules = model.bodies[index];
-  BodyAudit audit;
-  audit.lower.fill(body.particles > 0 ? std::numeric_limits<double>::infinity() : 0);
-  audit.upper.fill(body.particles > 0 ? -std::numeric_limits<double>::infinity() : 0);
-  const bool affine = !body.affine.empty(), plastic = !body.plastic_strain.empty(), thermal = !body.temperature.empty();
-  const double affine_factor = 0.125 * model.grid.cell_size * model.grid.cell_size;
-  // Sums by group first: fewer additions in a row, hence less round-off.
-  for (const Group& group : body.groups) {
-    BodyAudit part;
-    Vector3 lower = audit.lower, upper = audit.upper;
-    const std::int64_t end = group.begin + group.count;
+  BodyAudit part;
+  Vector3 lower, upper;
+  lower.fill(std::numeric_limits<double>::infinity());
+  upper.fill(-std::numeric_limits<double>::infinity());
+  const std::int64_t end = group.begin + group.count;
+  for (std::int64_t p = group.begin; p < end; ++p) {
+    const double* x = &body.position[4 * p];
+    const double* v = &body.velocity[4 * p];
+    const double mass = x[3];
+    part.mass += mass;
+    part.kinetic += mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    part.internal += mass * body.energy[p];
+    add(part.angular_momentum, times(mass, cross({x[0], x[1], x[2]}, {v[0], v[1], v[2]})));
+    for (int c = 0; c < 3; ++c) {
+      part.momentum[c] += mass * v[c];
+      part.first_moment[c] += mass * x[c];
+      lower[c] = x[c] < lower[c] ? x[c] : lower[c];
+      upper[c] = x[c] > upper[c] ? x[c] : upper[c];
+    }
+  }
+  part.lower = lower;
+  part.upper = upper;
+  part.kinetic *= 0.5;
+  part.internal /= density;
+  if (rules.rigid()) {
+    part.kinetic += 0.5 * part.mass * rules.own_inertia * dot(body.rigid.spin, body.rigid.spin);
+    add(part.angular_momentum, times(part.mass * rules.own_inertia, body.rigid.spin));
+  }
+  if (!body.affine.empty()) {
+    const double affine_factor = 0.125 * model.grid.cell_size * model.grid.cell_size;
+    double sum = 0;
+    Vector3 curl{};
     for (std::int64_t p = group.begin; p < end; ++p) {
-      const double* x = &body.position[4 * p];
-      const double* v = &body.velocity[4 * p];
-      const double mass = x[3];
-      part.mass += mass;
-      part.kinetic += mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      part.internal += mass * body.energy[p];
-      add(part.angular_momentum, times(mass, cross({x[0], x[1], x[2]}, {v[0], v[1], v[2]})));
-      for (int c = 0; c < 3; ++c) {
-        part.momentum[c] += mass * v[c];
-        part.first_moment[c] += mass * x[c];
-        lower[c] = x[c] < lower[c] ? x[c] : lower[c];
-        upper[c] = x[c] > upper[c] ? x[c] : upper[c];
-      }
+      const double* C = &body.affine[affine_size * p];
+      double rows[3];
+      for (int i = 0; i < 3; ++i) rows[i] = C[3 * i] * C[3 * i] + C[3 * i + 1] * C[3 * i + 1] + C[3 * i + 2] * C[3 * i + 2];
+      sum += body.position[4 * p + 3] * (rows[0] + rows[1] + rows[2]);
+      add(curl, times(body.position[4 * p + 3], {C[3 + 2] - C[6 + 1], C[6 + 0] - C[0 + 2], C[0 + 1] - C[3 + 0]}));
     }
-    part.kinetic *= 0.5;
-    part.internal /= density;
-    if (rules.rigid()) {
-      part.kinetic += 0.5 * part.mass * rules.own_inertia * dot(body.rigid.spin, body.rigid.spin);
-      add(part.angular_momentum, times(part.mass * rules.own_inertia, body.rigid.spin));
-    }
-    if (affine) {
-      double sum = 0;
-      Vector3 curl{};
-      for (std::int64_t p = group.begin; p < end; ++p) {
-        const double* C = &body.affine[affine_size * p];
-        double rows[3];
-        for (int i = 0; i < 3; ++i) rows[i] = C[3 * i] * C[3 * i] + C[3 * i + 1] * C[3 * i + 1] + C[3 * i + 2] * C[3 * i + 2];
-        sum += body.position[4 * p + 3] * (rows[0] + rows[1] + rows[2]);
-        add(curl, times(body.position[4 * p + 3], {C[3 + 2] - C[6 + 1], C[6 + 0] - C[0 + 2], C[0 + 1] - C[3 + 0]}));
-      }
-      part.kinetic += affine_factor * sum;
-      add(part.angular_momentum, times(2 * affine_factor, curl));
-    }
-    if (plastic)
-      for (std::int64_t p = group.begin; p < end; ++p)
-        audit.maximum_plastic_strain = std::max(audit.maximum_plastic_strain, body.plastic_strain[p]);
-    if (thermal)
-      for (std::int64_t p = group.begin; p < end; ++p)
-        audit.maximum_temperature = std::max(audit.maximum_temperature, body.temperature[p]);
-    audit.lower = lower;
-    audit.upper = upper;
+    part.kinetic += affine_factor * sum;
+    add(part.angular_momentum, times(2 * affine_factor, curl));
+  }
+  if (!body.plastic_strain.empty())
+    for (std::int64_t p = group.begin; p < end; ++p)
+      part.maximum_plastic_strain = std::max(part.maximum_plastic_strain, body.plastic_strain[p]);
+  if (!body.temperature.empty())
+    for (std::int64_t p = group.begin; p < end; ++p)
+      part.maximum_temperature = std::max(part.maximum_temperature, body.temperature[p]);
+  return part;
+}
+
+}  // namespace
+
+BodyAudit audit_body(const Model& model, const State& state, int index, int threads) {
+  const BodyState& body = state.bodies[index];
+  // Sums by group first: fewer additions in a row, hence less round-off, and the same bits for any number of threads.
+  std::vector<BodyAudit> parts(body.groups.size());
+  for_each_in_parts(threads, 0, static_cast<std::int64_t>(parts.size()),
+                    [&](std::int64_t g) { parts[g] = audit_group(model, body, index, body.groups[g]); });
+  BodyAudit audit;
+  if (!parts.empty()) {
+    audit.lower = parts[0].lower;
+    audit.upper = parts[0].upper;
+  }
+  for (const BodyAudit& part : parts) {
     audit.mass += part.mass;
     audit.kinetic += part.kinetic;
     audit.internal += part.internal;
+    audit.maximum_plastic_strain = std::max(audit.maximum_plastic_strain, part.maximum_plastic_strain);
+    audit.maximum_temperature = std::max(audit.maximum_temperature, part.maximum_temperature);
     for (int c = 0; c < 3; ++c) {
       audit.momentum[c] += part.momentum[c];
       audit.angular_momentum[c] += part.angular_momentum[c];
       audit.first_moment[c] += part.first_moment[c];
+      audit.lower[c] = std::min(audit.lower[c], part.lower[c]);
+      audit.upper[c] = std::max(audit.upper[c], part.upper[c]);
     }
   }
   if (body.lagrangian) {
@@ -97,12 +119,12 @@ BodyAudit audit_body(const Model& model, const State& state, int index) {
   return audit;
 }
 
-double total_energy(const Model& model, const State& state) {
+double total_energy(const Model& model, const State& state, int threads) {
   double total =
       state.ledger.friction_dissipation + state.ledger.transfer_dissipation + state.ledger.contact_dissipation -
       state.ledger.external_work - state.ledger.prescribed_work;
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
-    const BodyAudit audit = audit_body(model, state, b);
+    const BodyAudit audit = audit_body(model, state, b, threads);
     const BodyTotals& totals = state.bodies[b].totals;
     total += audit.kinetic + audit.internal + totals.failure_loss + totals.left.energy + totals.dropped.energy;
   }

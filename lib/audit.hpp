@@ -14,14 +14,14 @@ struct BodyAudit {
   Vector3 lower{}, upper{};
   double maximum_plastic_strain = 0, maximum_temperature = 0;
 };
-BodyAudit audit_body(const Model& model, const State& state, int body);
+BodyAudit audit_body(const Model& model, const State& state, int body, int threads = 1);
 
 // Kinetic energy of a particle's affine velocity field, m h^2/8 |C|^2.
 double affine_energy(const BodyState& body, std::int64_t particle, double cell_size);
 
 // kinetic + internal + failure loss + energy that left or was dropped + friction heat + transfer dissipation - external work
 // - work of prescribed motion, of all bodies.
-double total_energy(const Model& model, const State& state);
+double total_energy(const Model& model, const State& state, int threads = 1);
 
 // Momentum of the centre of mass alone, for the stop condition.
 Vector3 body_momentum(const BodyState& body);

@@ -77,7 +77,9 @@ double largest_turn(const State& state) {
 
 }  // namespace
 
-double energy_growth(const Model& model, const State& state) { return growth_of(model, state, total_energy(model, state)); }
+double energy_growth(const Model& model, const State& state, int threads) {
+  return growth_of(model, state, total_energy(model, state, threads));
+}
 
 std::string probable_cause(const Model& model, const State& state) {
   const Numerics& numerics = model.numerics;
@@ -112,11 +114,11 @@ std::string probable_cause(const Model& model, const State& state) {
   return "the time step may be too long for what moves here: use a smaller time_step_factor (now " + factor + "), or finer cells";
 }
 
-bool watch_energy(const Model& model, State& state) {
+bool watch_energy(const Model& model, State& state, int threads) {
   if (state.steps % energy_watch_steps != 0) return false;
   EnergyWatch& watch = state.energy_watch;
   watch.largest_work = work_done(state);
-  const double growth = energy_growth(model, state);
+  const double growth = energy_growth(model, state, threads);
   if (growth > watch.largest_growth) {
     watch.largest_growth = growth;
     watch.largest_growth_time = state.time;

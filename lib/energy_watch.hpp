@@ -14,12 +14,12 @@ namespace ogive {
 constexpr std::int64_t energy_watch_steps = 25;  // a pass over all particles: 0.2 % of the work of so many steps
 
 // Growth now; negative where energy is lost.
-double energy_growth(const Model& model, const State& state);
+double energy_growth(const Model& model, const State& state, int threads = 1);
 
 // To be called after each step; looks at every 25th. Remembers the largest growth and when the warning's limit was first passed.
 // Returns true when it has been passed in this call. Throws Error(Numerical), with when, where and the probable cause, above
 // the second limit.
-bool watch_energy(const Model& model, State& state);
+bool watch_energy(const Model& model, State& state, int threads);
 
 // What most likely makes this run gain energy, and what helps.
 std::string probable_cause(const Model& model, const State& state);
