@@ -7,6 +7,7 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -659,15 +660,25 @@ void check_count(const BodyState& body, const Field& field, std::int64_t count) 
 // Calls put(rank of the particle, place) for each particle; the rank counts numbers in ascending order.
 template <class Put>
 void in_order_of_number(const BodyState& body, Put&& put) {
-  std::vector<std::int32_t> present;  // only where some numbers are gone: otherwise the number is the rank
-  if (std::any_of(body.number.begin(), body.number.end(), [&](std::int32_t n) { return n >= body.particles; })) {
-    std::copy_if(body.number.begin(), body.number.end(), std::back_inserter(present), [](std::int32_t n) { return n >= 0; });
-    std::sort(present.begin(), present.end());
+  const std::int32_t last = body.number.empty() ? -1 : *std::max_element(body.number.begin(), body.number.end());
+  // Where some numbers are gone a particle's rank is how many smaller ones there are: whole words of 64, then bits in its own.
+  std::vector<std::uint64_t> present;
+  std::vector<std::int64_t> before;
+  if (last >= body.particles) {
+    present.resize(static_cast<std::size_t>(last) / 64 + 1);
+    for (const std::int32_t n : body.number)
+      if (n >= 0) present[static_cast<std::size_t>(n) / 64] |= std::uint64_t{1} << (n % 64);
+    std::int64_t sum = 0;
+    for (const std::uint64_t word : present) {
+      before.push_back(sum);
+      sum += std::popcount(word);
+    }
   }
   for (std::int64_t p = 0; p < body.padded; ++p) {
     const std::int32_t n = body.number[p];
     if (n < 0) continue;
-    put(present.empty() ? n : std::lower_bound(present.begin(), present.end(), n) - present.begin(), p);
+    const std::size_t word = static_cast<std::size_t>(n) / 64;
+    put(present.empty() ? n : before[word] + std::popcount(present[word] & ((std::uint64_t{1} << (n % 64)) - 1)), p);
   }
 }
 
