@@ -153,26 +153,36 @@ TEST(Grid, WhatAParticleCarriesGoesWithIt) {
   }
 }
 
-TEST(Grid, GroupsOfOneColourTouchNoCommonNodeUnlessTheyShareAPencil) {
+TEST(Grid, OfTwoPencilsThatTouchACommonNodeOneWaitsForTheOther) {
   const World world({scattered(4000, {0, 10, 20}, 60), scattered(500, {30, 40, 50}, 20)});
   const Workspace& w = world.workspace;
-  for (int colour = 0; colour < colours; ++colour) {
-    std::map<std::int64_t, std::int32_t> owner;  // node to pencil
-    for (std::int32_t p = w.colour[colour]; p < w.colour[colour + 1]; ++p)
-      for (std::int32_t l = w.pencils[p].begin; l < w.pencils[p].end; ++l) {
-        const GroupLinks& link = w.links[l];
-        for (int z = link.tile_low[2]; z <= link.tile_high[2]; ++z)
-          for (int y = link.tile_low[1]; y <= link.tile_high[1]; ++y)
-            for (int x = link.tile_low[0]; x <= link.tile_high[0]; ++x) {
-              const int block = (((z + 3) >> 2) * 3 + ((y + 3) >> 2)) * 3 + ((x + 3) >> 2);
-              ASSERT_GE(link.slot[block], 0);
-              const std::int64_t node = static_cast<std::int64_t>(link.slot[block]) * block_nodes +
-                                        ((((z + 3) & 3) * 4 + ((y + 3) & 3)) * 4 + ((x + 3) & 3));
-              const auto found = owner.emplace(node, p).first;
-              ASSERT_EQ(found->second, p);
-            }
-      }
-  }
+  std::map<std::int64_t, std::set<std::int32_t>> touching;  // pencils by node
+  for (std::int32_t p = 0; p < static_cast<std::int32_t>(w.pencils.size()); ++p)
+    for (std::int32_t l = w.pencils[p].begin; l < w.pencils[p].end; ++l) {
+      const GroupLinks& link = w.links[l];
+      for (int z = link.tile_low[2]; z <= link.tile_high[2]; ++z)
+        for (int y = link.tile_low[1]; y <= link.tile_high[1]; ++y)
+          for (int x = link.tile_low[0]; x <= link.tile_high[0]; ++x) {
+            const int block = (((z + 3) >> 2) * 3 + ((y + 3) >> 2)) * 3 + ((x + 3) >> 2);
+            ASSERT_GE(link.slot[block], 0);
+            touching[static_cast<std::int64_t>(link.slot[block]) * block_nodes +
+                     ((((z + 3) & 3) * 4 + ((y + 3) & 3)) * 4 + ((x + 3) & 3))]
+                .insert(p);
+          }
+    }
+  const auto waits = [&](std::int32_t a, std::int32_t b) {
+    const std::vector<std::int32_t> awaited = w.schedule.awaited_by(a);
+    return std::count(awaited.begin(), awaited.end(), b) == 1;
+  };
+  int shared = 0;
+  for (const auto& [node, pencils] : touching)
+    for (const std::int32_t a : pencils)
+      for (const std::int32_t b : pencils)
+        if (a < b) {
+          ++shared;
+          ASSERT_NE(waits(a, b), waits(b, a)) << "pencils " << a << " and " << b;
+        }
+  EXPECT_GT(shared, 1000);
 }
 
 TEST(Grid, BlocksAreMixedWhereTwoBodiesReachThemAndOnlyThere) {
