@@ -37,19 +37,20 @@ constexpr int width = 2;
 #endif
 typedef double Vector __attribute__((vector_size(8 * width)));
 
+// Chains one by one: an array of them would be kept in memory.
 double flops() {
   constexpr long rounds = 20'000'000;
   constexpr int chains = 12;
-  Vector a[chains];
-  for (int k = 0; k < chains; ++k) a[k] = Vector{} + (1.0 + k);
+  Vector a{}, b{}, c{}, d{}, e{}, f{}, g{}, h{}, k{}, l{}, m{}, n{};
   const Vector factor = Vector{} + 0.999, term = Vector{} + 1e-3;
+  const auto next = [&](Vector& chain) __attribute__((always_inline)) {
+    chain = chain * factor + term;
+    asm volatile("" : "+v"(chain));
+  };
   const double start = now();
   for (long i = 0; i < rounds; ++i) {
-#pragma GCC unroll 12
-    for (int k = 0; k < chains; ++k) {
-      a[k] = a[k] * factor + term;
-      asm volatile("" : "+v"(a[k]));
-    }
+    next(a), next(b), next(c), next(d), next(e), next(f);
+    next(g), next(h), next(k), next(l), next(m), next(n);
   }
   return 2.0 * width * chains * rounds / (now() - start);
 }

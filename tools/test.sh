@@ -36,7 +36,7 @@ phase() {
 }
 
 release() {
-  phase "release: configure" cmake --preset release -B "$build/release" || return 0
+  phase "release: configure" cmake --preset release -B "$build/release" -DOGIVE_BENCH=ON || return 0
   phase "release: build" cmake --build "$build/release" -j "$jobs" || return 0
   phase "release: all tests" ctest --test-dir "$build/release" --output-on-failure --no-tests=error -j "$jobs" || return 0
 }

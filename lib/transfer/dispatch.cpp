@@ -1,7 +1,9 @@
 // Run-time choice of the kernels' instruction set.
 #include <cstdlib>
 #include <cstring>
+#include <string>
 
+#include "error.hpp"
 #include "transfer/kernels.hpp"
 
 namespace ogive {
@@ -29,6 +31,8 @@ struct Candidate {
   bool runs;
 };
 
+// The best that this processor has, or the one that is asked for. One that it lacks is an error: taking another without a word
+// would make a comparison of speeds worthless.
 const KernelTable& choose() {
   const char* const wanted = std::getenv("OGIVE_ISA");
 #ifdef OGIVE_X86_64_LEVELS
@@ -42,13 +46,14 @@ const KernelTable& choose() {
 #else
   const Candidate candidates[] = {{"generic", &generic::table, true}};
 #endif
-  const Candidate* best = nullptr;
+  std::string names;
   for (const Candidate& candidate : candidates) {
     if (!candidate.runs) continue;
-    if (!best) best = &candidate;
-    if (wanted && std::strcmp(wanted, candidate.name) == 0) return *candidate.table;
+    if (!wanted || *wanted == 0 || std::strcmp(wanted, candidate.name) == 0) return *candidate.table;
+    names += (names.empty() ? "" : ", ") + std::string(candidate.name);
   }
-  return *best->table;
+  throw Error(ErrorKind::Argument, "OGIVE_ISA (environment): must be an instruction set that this processor and this build have (" +
+                                       names + "), got \"" + wanted + '"');
 }
 
 }  // namespace

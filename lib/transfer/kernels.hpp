@@ -127,7 +127,7 @@ struct KernelTable {
 };
 
 // The best table for this processor, or the one that the environment variable OGIVE_ISA names (x86-64-v2, x86-64-v3,
-// x86-64-v4, generic) where the processor can run it.
+// x86-64-v4, generic). Throws Error(Argument) for one that the processor or the build lacks.
 const KernelTable& kernel_table();
 
 }  // namespace ogive

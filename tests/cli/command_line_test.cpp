@@ -81,6 +81,19 @@ TEST(CommandLine, settings_from_a_shell_need_no_quoting) {
   EXPECT_NEAR(summary.at("bodies").at("left").at("initial_speed"), 15.0, 1e-10);
 }
 
+TEST(CommandLine, an_instruction_set_that_is_not_there_is_refused) {
+  const ScratchDirectory scratch;
+  const std::string check = " ogive check " + data("two_boxes.toml");
+  const Outcome refused = run_in_shell(scratch.path(), "OGIVE_ISA=x86-64-v9" + check);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.errors.find("OGIVE_ISA (environment): must be an instruction set that this processor and this build have ("),
+            std::string::npos)
+      << refused.errors;
+  EXPECT_NE(refused.errors.find("generic), got \"x86-64-v9\""), std::string::npos) << refused.errors;
+  const Outcome generic = run_in_shell(scratch.path(), "OGIVE_ISA=generic" + check);
+  EXPECT_EQ(generic.exit_code, 0) << generic.errors;
+}
+
 TEST(CommandLine, voxelise_writes_particles_that_a_scene_can_use) {
   const ScratchDirectory scratch;
   const Outcome outcome =
