@@ -79,15 +79,30 @@ class Planner {
     read();
     for (size_t i = 0; i < scene_.bodies.size(); ++i) refine_particles(old, i, cell / before, origin);
     read();
-    const bool factor_given = scene_.numerics.time_step_factor.has_value();
     decide("accuracy", true,
-           "cells of " + brief(cell) + ' ' + scene_.units.length + " (the scene's: " + brief(before) + "), particles in proportion, " +
-               (factor_given ? "the scene's time step factor " + brief(*scene_.numerics.time_step_factor)
-                             : std::string("time step factor 0.5")),
+           "cells of " + brief(cell) + ' ' + scene_.units.length + " (the scene's: " + brief(before) + "), particles in proportion",
            brief(*cells) + " cells across \"" + thinnest.body + "\" (" + brief(thinnest.measure) + ' ' + scene_.units.length +
                "): with as many, the error of discretisation was at most " + brief(100 * error) +
                " % in the studies (docs/accuracy.md)",
            "leave accuracy out and give grid.cell_size");
+    choose_time_step(error, *cells, origin);
+  }
+
+  void choose_time_step(double error, double cells, const std::string& origin) {
+    const TimeStepChoice choice = time_step_for(error, cells);
+    const auto given = scene_.numerics.time_step_factor;
+    if (given && *given <= choice.factor) {
+      decide("time step", true, "the scene's factor " + brief(*given),
+             "the studies found " + brief(choice.factor) + " to be small enough (docs/accuracy.md); a smaller one stays",
+             "numerics.time_step_factor");
+      return;
+    }
+    apply({{"numerics.time_step_factor", shortest(choice.factor)}}, origin);
+    read();
+    decide("time step", true, "factor " + brief(choice.factor) + (given ? " (the scene's: " + brief(*given) + ')' : ""),
+           "the largest that is sure to be stable (docs/stability.md) and changed no result by more than " + brief(100 * error) +
+               " %, by " + brief(100 * choice.change) + " % at most, in the studies (docs/accuracy.md)",
+           "leave accuracy out, or a smaller numerics.time_step_factor");
   }
 
   static std::string error_in_words(double cells) {

@@ -1,9 +1,10 @@
-// How fine the cells must be for a wanted error.
+// How fine the cells must be, and how long the steps may be, for a wanted error.
 //
 // The evidence is docs/data/resolution.csv, which tools/resolution_table.py writes from runs: of some scenes the error of a
-// result, against the limit of fine cells or else the finest run, by the number of cells across the thinnest body. The envelope of a series is the
-// largest error with as many cells or more; between two points it goes with a power of their number where the series has an
-// order, else as at the coarser one. All series must be within the wanted error.
+// result, against the limit of fine cells or else the finest run, by the number of cells across the thinnest body. The envelope
+// of a series is the largest error with as many cells or more; between two points it goes with a power of their number where the
+// series has an order, else as at the coarser one. All series must be within the wanted error. docs/data/time_step_factor.csv
+// has the same scenes with smaller and larger time steps.
 #include "resolution.hpp"
 
 #include <ogive.h>
@@ -31,16 +32,24 @@ struct Series {
   bool has_order = false;  // its error goes with a power of the cells, so that it is known between them
 };
 
+/// The rows of a table after its first line, each in its fields.
+std::vector<std::vector<std::string>> rows_of(std::string_view table) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines{std::string(table)};
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream row(line);
+    rows.emplace_back();
+    for (std::string field; std::getline(row, field, ',');) rows.back().push_back(field);
+  }
+  return rows;
+}
+
 const std::vector<Series>& envelopes() {
   static const std::vector<Series> all = [] {
     std::map<std::string, Series> series;
-    std::istringstream lines{std::string(resolution_data)};
-    std::string line;
-    std::getline(lines, line);  // scene,result,cells_across,cell,value,error,limit,...
-    while (std::getline(lines, line)) {
-      std::vector<std::string> fields;
-      std::istringstream row(line);
-      for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
+    for (const auto& fields : rows_of(resolution_data)) {  // scene,result,cells_across,cell,value,error,limit,...
       if (fields.size() < 7 || fields[5].empty()) continue;
       Series& of = series[fields[0] + ',' + fields[1]];
       of.points.push_back({std::stod(fields[2]), std::abs(std::stod(fields[5]))});
@@ -153,6 +162,31 @@ std::optional<double> error_with(double cells) {
     error = std::max(error, here);
   }
   return error;
+}
+
+TimeStepChoice time_step_for(double error, double cells) {
+  // By scene and result, the changes that factors make, with the finest of the cells looked at that are not finer than these.
+  struct Changes {
+    double cells = 0;
+    std::map<double, double> by_factor;
+  };
+  std::map<std::string, Changes> all;
+  for (const auto& fields : rows_of(factor_data)) {  // scene,result,cells_across,cell,factor,value,change,seconds
+    const double across = std::stod(fields[2]);
+    Changes& of = all[fields[0] + ',' + fields[1]];
+    const bool finer = across > of.cells && across <= cells;
+    if (!of.by_factor.empty() && across != of.cells && !finer) continue;
+    if (across != of.cells) of.by_factor.clear();
+    of.cells = across;
+    of.by_factor[std::stod(fields[4])] = std::abs(std::stod(fields[6]));
+  }
+  std::map<double, double> largest;
+  for (const auto& [name, of] : all)
+    for (const auto& [factor, change] : of.by_factor) largest[factor] = std::max(largest[factor], change);
+  TimeStepChoice choice{largest.begin()->first, largest.begin()->second};
+  for (const auto& [factor, change] : largest)
+    if (factor <= largest_stable_factor && change <= error) choice = {factor, change};
+  return choice;
 }
 
 double smallest_error() {

@@ -42,11 +42,16 @@ class Parts {
 #pragma omp parallel num_threads(threads())
     {
       const FlushSubnormals flush;
-      take(omp_get_thread_num(), work);
+      const int own = omp_get_thread_num();
+      if (omp_get_num_threads() == threads()) {
+        take(own, work);
+      } else if (own == 0) {  // the host gives no team of this size, as inside a parallel region of its own
+        for (const std::int32_t i : order_) work(i);
+      }
     }
   }
 
-  // What one thread of a team does, between restart() and the end of its parallel region.
+  // What a thread of a full team does, between restart() and the end of its parallel region.
   void restart() {
     for (int part = 0; part < threads(); ++part) cursors_[part].next = first_[part];
   }
@@ -108,14 +113,13 @@ class Schedule {
     {
       const FlushSubnormals flush;
       const int own = omp_get_thread_num();
-      // A part of a thread that is missing would be waited for without end.
       if (omp_get_num_threads() == threads()) {
         parts_.take(own, [&](std::int32_t pencil) {
           wait_for_neighbours(pencil, round);
           work(pencil);
           done_[pencil].store(round, std::memory_order_release);
         });
-      } else if (own == 0) {
+      } else if (own == 0) {  // see Parts
         for (const std::int32_t pencil : sequence_) work(pencil);
       }
     }

@@ -9,19 +9,16 @@ finished are not run again.
 """
 
 import argparse
-import csv
-import json
 import os
 import re
-import subprocess
 import tempfile
 
-from plot_common import Refused, run_main
+from plot_common import run_main
+from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "coarse.csv")
 PAGE = os.path.join(ROOT, "docs", "performance.md")
-QUIET = ["output.particle_interval=0", "output.checkpoint_steps=0", "numerics.threads=1"]
 # Label: scene, settings, the line of the path, the striker's calibre, distances.
 CASES = {
     "thick plate, 575 m/s": ("thick_plate/scene.toml", [], "from=[0,0,0],to=[15.2,0,26.3]", 12.9, [35, 25.8, 19.4, 12.9]),
@@ -30,23 +27,13 @@ CASES = {
 }
 
 
-def run(program, directory, scene, settings):
-    summary = os.path.join(directory, "summary.json")
-    if not os.path.exists(summary):
-        command = [program, "run", os.path.join(ROOT, "examples", "scenes", scene), "-o", directory, "--overwrite"]
-        subprocess.run(command + [part for setting in QUIET + settings for part in ("--set", setting)], check=True,
-                       stdout=subprocess.DEVNULL)
-    with open(summary, encoding="utf-8") as file:
-        return json.load(file)
-
-
 def rows_of(program, work, label):
     scene, settings, line, calibre, distances = CASES[label]
     rows = []
     for beyond in [None] + distances:
         coarse = [f"bodies.plate.coarse={{beyond={beyond},{line}}}"] if beyond else []
         name = re.sub("[^a-z0-9]+", "-", label) + f"-{beyond or 'all'}"
-        summary = run(program, os.path.join(work, name), scene, settings + coarse)
+        summary = run_scene(program, scene, os.path.join(work, name), NO_FILES + settings + coarse)
         rows.append({"case": label, "beyond": beyond or "", "calibres": f"{beyond / calibre:.2g}" if beyond else "",
                      "particles": summary["particles"], "seconds": f"{summary['cpu_seconds']['stepping']:.4g}",
                      "value": f"{summary['results']['residual_velocity']:.8g}",
@@ -55,16 +42,16 @@ def rows_of(program, work, label):
 
 
 def table(rows):
-    lines = ["| case | one particle a cell beyond [mm] (calibres) | particles | processor time [s] | faster | residual velocity [m/s] | "
-             "difference | energy unaccounted for |", "|---|---|---|---|---|---|---|---|"]
+    lines = []
     whole = {row["case"]: row for row in rows if not row["beyond"]}
     for row in rows:
         base = whole[row["case"]]
         far = f"{row['beyond']} ({row['calibres']})" if row["beyond"] else "nowhere"
-        lines.append(f"| {row['case']} | {far} | {int(row['particles']):,} | {row['seconds']} | "
-                     f"{float(base['seconds']) / float(row['seconds']):.2f} | {float(row['value']):.6g} | "
-                     f"{100 * (float(row['value']) / float(base['value']) - 1):+.3f} % | {100 * float(row['energy_residual']):+.2f} % |")
-    return "\n".join(lines)
+        lines.append([row["case"], far, f"{int(row['particles']):,}", row["seconds"],
+                      f"{float(base['seconds']) / float(row['seconds']):.2f}", f"{float(row['value']):.6g}",
+                      f"{100 * (float(row['value']) / float(base['value']) - 1):+.3f} %", f"{100 * float(row['energy_residual']):+.2f} %"])
+    return markdown_table(["case", "one particle a cell beyond [mm] (calibres)", "particles", "processor time [s]", "faster",
+                           "residual velocity [m/s]", "difference", "energy unaccounted for"], lines)
 
 
 def main():
@@ -76,20 +63,9 @@ def main():
     if not arguments.table_only:
         with tempfile.TemporaryDirectory() as temporary:
             rows = [row for label in CASES for row in rows_of(arguments.program, arguments.work or temporary, label)]
-        with open(DATA, "w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
-    with open(DATA, encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    with open(PAGE, encoding="utf-8") as file:
-        page = file.read()
-    page, count = re.subn(r"(<!-- coarse:begin -->\n).*?(<!-- coarse:end -->)", lambda m: m[1] + table(rows) + "\n" + m[2], page,
-                          flags=re.DOTALL)
-    if count != 1:
-        raise Refused("docs/performance.md has no place for coarse")
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(page)
+        write_table(DATA, rows)
+    rows = read_table(DATA)
+    replace_block(PAGE, "coarse", table(rows))
     print(table(rows))
 
 

@@ -10,19 +10,15 @@ docs/data/plan.csv and the table between the markers of docs/performance.md. Run
 """
 
 import argparse
-import csv
-import json
 import os
-import re
-import subprocess
 import tempfile
 
-from plot_common import Refused, run_main
+from plot_common import run_main
+from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "plan.csv")
 PAGE = os.path.join(ROOT, "docs", "performance.md")
-QUIET = ["output.particle_interval=0", "output.checkpoint_steps=0", "numerics.threads=1"]
 HELD_BEAM = ("clamps=[" + ",".join('{body="beam",region="box",lower=[%s,0,0],upper=[%s,1000,"depth"]}' % ends
                                    for ends in (('"1000-cell"', "1000"), ("-1000", '"cell-1000"'))) + "]")
 # Scene: (label, what makes it whole, result and where it stands in summary.json, unit, of revolution). After the flight axis
@@ -48,19 +44,6 @@ SCENES = {
                          ["bodies", "beam", "centre", 1], "mm", False),
     "four_spheres": ("four spheres", [], "speed of the striker", ["bodies", "striker", "velocity", 2], "m/s", False),
 }
-COLUMNS = ["scene", "model", "particles", "steps", "seconds", "megabytes", "result", "value"]
-
-
-def run(program, work, scene, model, settings):
-    directory = os.path.join(work, f"{scene}-{model}")
-    summary = os.path.join(directory, "summary.json")
-    if not os.path.exists(summary):
-        command = [program, "run", os.path.join(ROOT, "examples", "scenes", scene, "scene.toml"), "-o", directory, "--overwrite"]
-        command += [part for setting in QUIET + settings for part in ("--set", setting)]
-        # By a shell: this process's own memory would be in the peak of a child of its own.
-        subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], check=True, stdout=subprocess.DEVNULL)
-    with open(summary, encoding="utf-8") as file:
-        return json.load(file)
 
 
 def rows_of(program, work, scene):
@@ -70,7 +53,7 @@ def rows_of(program, work, scene):
     if of_revolution:
         models["axisymmetric"] = ["symmetry=axisymmetric"]
     for model, settings in models.items():
-        summary = run(program, work, scene, model, whole + settings)
+        summary = run_scene(program, f"{scene}/scene.toml", os.path.join(work, f"{scene}-{model}"), NO_FILES + whole + settings)
         value = summary
         for key in path[:-1] + [1] if model == "axisymmetric" and path[-1] == 2 else path:
             value = value[key]
@@ -81,8 +64,7 @@ def rows_of(program, work, scene):
 
 
 def table(rows):
-    lines = ["| scene | planned model | particles | processor time [s] | faster | memory [MB] | result | full | planned | difference |",
-             "|---|---|---|---|---|---|---|---|---|---|"]
+    lines = []
     for scene, (label, _, result, _, unit, _) in SCENES.items():
         of = {row["model"]: row for row in rows if row["scene"] == scene}
         for model in ("planned", "axisymmetric"):
@@ -93,11 +75,12 @@ def table(rows):
             what = "axisymmetric" if model == "axisymmetric" else {1: "whole", 2: "half", 4: "quarter", 8: "eighth"}[round(share)]
             slow, fast = float(full["seconds"]), float(row["seconds"])
             difference = float(row["value"]) / float(full["value"]) - 1
-            lines.append(f"| {label} | {what} | {int(full['particles']):,} / {int(row['particles']):,} | {slow:.3g} / {fast:.3g} | "
-                         f"**{slow / fast:.3g}** | {float(full['megabytes']):.3g} / {float(row['megabytes']):.3g} | {result} | "
-                         f"{float(full['value']):.5g} {unit} | {float(row['value']):.5g} {unit} | "
-                         + (f"{100 * difference:+.2f} %" if abs(difference) > 1e-6 else f"{difference:+.1e}") + " |")
-    return "\n".join(lines)
+            lines.append([label, what, f"{int(full['particles']):,} / {int(row['particles']):,}", f"{slow:.3g} / {fast:.3g}",
+                          f"**{slow / fast:.3g}**", f"{float(full['megabytes']):.3g} / {float(row['megabytes']):.3g}", result,
+                          f"{float(full['value']):.5g} {unit}", f"{float(row['value']):.5g} {unit}",
+                          f"{100 * difference:+.2f} %" if abs(difference) > 1e-6 else f"{difference:+.1e}"])
+    return markdown_table(["scene", "planned model", "particles", "processor time [s]", "faster", "memory [MB]", "result", "full",
+                           "planned", "difference"], lines)
 
 
 def main():
@@ -107,27 +90,15 @@ def main():
     parser.add_argument("--only", choices=list(SCENES))
     parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
     arguments = parser.parse_args()
-    rows = []
-    if os.path.exists(DATA):
-        with open(DATA, encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+    rows = read_table(DATA)
     if not arguments.table_only:
         with tempfile.TemporaryDirectory() as temporary:
             work = arguments.work or temporary
             os.makedirs(work, exist_ok=True)
             for scene in [arguments.only] if arguments.only else list(SCENES):
                 rows = [row for row in rows if row["scene"] != scene] + rows_of(arguments.program, work, scene)
-        with open(DATA, "w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
-    with open(PAGE, encoding="utf-8") as file:
-        page = file.read()
-    page, count = re.subn(r"(<!-- plan:begin -->\n).*?(<!-- plan:end -->)", lambda m: m[1] + table(rows) + "\n" + m[2], page, flags=re.DOTALL)
-    if count != 1:
-        raise Refused("docs/performance.md has no place for plan")
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(page)
+        write_table(DATA, rows)
+    replace_block(PAGE, "plan", table(rows))
     print(table(rows))
 
 

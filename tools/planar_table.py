@@ -13,19 +13,16 @@ fails where a result is not that of the data, or is farther from the quarter mod
 """
 
 import argparse
-import csv
 import os
-import re
-import subprocess
 import tempfile
 
 from measure_steel_ball import measure_run
 from plot_common import Refused, run_main, summary_of
+from validation_table import markdown_table, read_table, replace_block, run_scene, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "planar.csv")
 PAGE = os.path.join(ROOT, "docs", "performance.md")
-COLUMNS = ["scene", "cell", "model", "particles", "steps", "seconds", "megabytes", "result", "value", "finer"]
 # Cells that are compared; the first are those of the scenes.
 CELLS = {"taylor_copper": [0.4, 0.25, 0.2], "steel_ball": [0.66]}
 # The rim of the hole tears into teeth, whose height a body of revolution cannot have: not asked for by --check.
@@ -54,17 +51,13 @@ class Runner:
 
     def run(self, scene, model, cell, repeats):
         """(summary, results) of the quickest of the runs."""
-        file = os.path.join(ROOT, "examples", "scenes", scene, "axisymmetric.toml" if model == "axisymmetric" else "scene.toml")
-        settings = ["numerics.threads=1", f"parameters.cell={cell}", f"parameters.spacing={cell / 2}",
+        file = os.path.join(scene, "axisymmetric.toml" if model == "axisymmetric" else "scene.toml")
+        settings = [f"parameters.cell={cell}", f"parameters.spacing={cell / 2}",
                     "output.particle_interval=0.08"]
         best = None
         for attempt in range(repeats):
             directory = tempfile.mkdtemp(dir=self.work, prefix=f"{scene}-{model}-{cell:g}-")
-            command = [self.program, "run", file, "-o", os.path.join(directory, "run")]
-            command += [part for setting in settings for part in ("--set", setting)]
-            # By a shell: this process's own memory would be in the peak of a child of its own.
-            subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], check=True, stdout=subprocess.DEVNULL)
-            summary = summary_of(os.path.join(directory, "run"))
+            summary = run_scene(self.program, file, os.path.join(directory, "run"), settings)
             if best is None or summary["cpu_seconds"]["stepping"] < best[0]["cpu_seconds"]["stepping"]:
                 best = summary, results_of(scene, os.path.join(directory, "run"), model)
             if summary["cpu_seconds"]["stepping"] > SHORT:
@@ -86,8 +79,7 @@ class Runner:
 
 
 def table(rows):
-    lines = ["| scene, cell | particles | processor time | faster | memory | result | quarter | axisymmetric | difference | "
-             "discretisation error |", "|---|---|---|---|---|---|---|---|---|---|"]
+    lines = []
     quarters = {(row["scene"], row["cell"], row["result"]): row for row in rows if row["model"] == "quarter"}
     before = None
     for row in rows:
@@ -103,10 +95,10 @@ def table(rows):
                     f"{slow:.3g} s / {fast:.3g} s", f"**{slow / fast:.3g}**",
                     f"{float(quarter['megabytes']):.3g} / {float(row['megabytes']):.3g} MB"]
         before = case
-        lines.append("| " + " | ".join(cost + [f"{row['result']} [{UNITS[row['result']]}]", f"{other:.4g}", f"{value:.4g}",
-                                               f"{100 * (value / other - 1):+.2f} %",
-                                               f"{100 * (value / finest - 1):+.2f} %"]) + " |")
-    return "\n".join(lines)
+        lines.append(cost + [f"{row['result']} [{UNITS[row['result']]}]", f"{other:.4g}", f"{value:.4g}",
+                             f"{100 * (value / other - 1):+.2f} %", f"{100 * (value / finest - 1):+.2f} %"])
+    return markdown_table(["scene, cell", "particles", "processor time", "faster", "memory", "result", "quarter", "axisymmetric",
+                           "difference", "discretisation error"], lines)
 
 
 def check(runner, rows):
@@ -137,10 +129,7 @@ def main():
     parser.add_argument("--check", action="store_true", help="nothing is written: are the results as in the data?")
     parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
     arguments = parser.parse_args()
-    rows = []
-    if os.path.exists(DATA):
-        with open(DATA, encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+    rows = read_table(DATA)
     if arguments.check:
         with tempfile.TemporaryDirectory() as temporary:
             check(Runner(arguments.program, arguments.work or temporary), rows)
@@ -154,16 +143,8 @@ def main():
                 rows = [row for row in rows if row["scene"] != scene] + runner.rows_of(scene)
         order = list(CELLS)
         rows.sort(key=lambda row: order.index(row["scene"]))
-        with open(DATA, "w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
-    with open(PAGE, encoding="utf-8") as file:
-        page = file.read()
-    page = re.sub(r"(<!-- planar:begin -->\n).*?(<!-- planar:end -->)", lambda m: m[1] + table(rows) + "\n" + m[2], page,
-                  flags=re.DOTALL)
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(page)
+        write_table(DATA, rows)
+    replace_block(PAGE, "planar", table(rows))
     print(table(rows))
 
 

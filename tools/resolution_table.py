@@ -2,9 +2,10 @@
 """What error costs how many cells: runs scenes with finer and finer cells and writes what `accuracy` in a scene goes by.
 
   resolution_table.py [--program build/release/bin/ogive] [--work DIR] [--jobs N] [--only SCENE] [--table-only]
+  resolution_table.py --factors [--program ...]      the same scenes with smaller and larger time steps
   resolution_table.py --deliver [--program ...]      runs with accuracy = 10 % and 3 %, and their errors
 
-Writes docs/data/resolution.csv, which the program carries, and the tables between the markers of docs/accuracy.md. The
+Writes docs/data/resolution.csv and docs/data/time_step_factor.csv, which the program carries, and the tables between the markers of docs/accuracy.md. The
 cells are counted across the thinnest body of the scene. The limit of fine cells is f0 of f0 + C h^p, by least squares over all
 cells of the series with p between 1/2 and 4; the error of a run is its distance from that limit. Where p is at one of these
 bounds no limit is claimed: the error is the distance from the finest run, whose own error is not known. Particles shrink with
@@ -13,23 +14,23 @@ the cells. Runs in DIR that are finished are not run again.
 
 import argparse
 import concurrent.futures
-import csv
-import json
 import os
 import re
-import subprocess
 import tempfile
 
 import numpy as np
 
-from plot_common import Refused, run_main
+from plot_common import run_main
+from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "resolution.csv")
+FACTOR_DATA = os.path.join(ROOT, "docs", "data", "time_step_factor.csv")
 DELIVERED = os.path.join(ROOT, "docs", "data", "accuracy_delivered.csv")
 PAGE = os.path.join(ROOT, "docs", "accuracy.md")
 ACCURACIES = ("10%", "3%")  # finer than the worst of the series allows is refused
-QUIET = ["output.particle_interval=0", "output.checkpoint_steps=0"]
+FACTORS = (0.125, 0.25, 0.5, 0.8)
+FACTOR_CELLS = {"thick_plate": (4, 3), "steel_ball": (0.33, 0.25), "copper_bar": (1.6, 0.8)}  # about 4 and 8 across
 
 
 class Series:
@@ -65,14 +66,7 @@ def edge(series, result, spacing):
 
 
 def run(program, work, series, label, settings):
-    directory = os.path.join(work, f"{series.name}-{label}")
-    summary = os.path.join(directory, "summary.json")
-    if not os.path.exists(summary):
-        command = [program, "run", os.path.join(ROOT, "examples", "scenes", series.file), "-o", directory, "--overwrite"]
-        command += [part for setting in QUIET + settings for part in ("--set", setting)]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    with open(summary, encoding="utf-8") as file:
-        return json.load(file)
+    return run_scene(program, series.file, os.path.join(work, f"{series.name}-{label}"), NO_FILES + settings)
 
 
 def limit_of(cells, values):
@@ -103,6 +97,36 @@ def rows_of(series, summaries):
     return rows
 
 
+def factor_rows(program, work, jobs):
+    cases = [(series, h, factor) for series in SERIES for h in FACTOR_CELLS[series.name] for factor in FACTORS]
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        done = list(pool.map(lambda case: run(program, work, case[0], f"{case[1]:g}-factor-{case[2]:g}",
+                                              case[0].settings(case[1]) + [f"numerics.time_step_factor={case[2]}"]), cases))
+    summaries = dict(zip(cases, done))
+    rows = []
+    for series in SERIES:
+        for result, (path, _) in series.results.items():
+            for h in FACTOR_CELLS[series.name]:
+                smallest = value_of(summaries[series, h, FACTORS[0]], path) + edge(series, result, h / 2)
+                for factor in FACTORS:
+                    summary = summaries[series, h, factor]
+                    value = value_of(summary, path) + edge(series, result, h / 2)
+                    rows.append({"scene": series.name, "result": result, "cells_across": f"{series.thinnest / h:.4g}",
+                                 "cell": f"{h:g}", "factor": f"{factor:g}", "value": f"{value:.6g}",
+                                 "change": f"{value / smallest - 1:.5f}", "seconds": f"{summary['cpu_seconds']['stepping']:.3g}"})
+    return rows
+
+
+def factor_table(rows):
+    lines = []
+    for begin in range(0, len(rows), len(FACTORS)):
+        part = rows[begin:begin + len(FACTORS)]
+        series = by_name(part[0]["scene"])
+        cells = [f"{row['value']} {series.results[row['result']][1]} ({percent(row['change'])}), {row['seconds']} s" for row in part]
+        lines.append([f"{series.label}, {part[0]['result']}", part[0]["cell"], *cells])
+    return markdown_table(["scene, result", "cell [mm]"] + [f"factor {factor:g}" for factor in FACTORS], lines)
+
+
 def by_name(name):
     return next(series for series in SERIES if series.name == name)
 
@@ -112,15 +136,14 @@ def percent(error):
 
 
 def table(rows):
-    lines = ["| scene, result | cells across the thinnest body | cell [mm] | value | error | limit (order) | processor time [s] |",
-             "|---|---|---|---|---|---|---|"]
+    lines = []
     for row in rows:
         series = by_name(row["scene"])
-        lines.append(f"| {series.label}, {row['result']} | {row['cells_across']} | {row['cell']} | {row['value']} "
-                     f"{series.results[row['result']][1]} | {percent(row['error'])} | "
-                     f"{row['limit'] + ' (' + row['order'] + ')' if row['limit'] else 'none; from the finest'} | "
-                     f"{row['seconds']} |")
-    return "\n".join(lines)
+        lines.append([f"{series.label}, {row['result']}", row["cells_across"], row["cell"],
+                      f"{row['value']} {series.results[row['result']][1]}", percent(row["error"]),
+                      f"{row['limit']} ({row['order']})" if row["limit"] else "none; from the finest", row["seconds"]])
+    return markdown_table(["scene, result", "cells across the thinnest body", "cell [mm]", "value", "error", "limit (order)",
+                           "processor time [s]"], lines)
 
 
 def delivered_rows(program, work, rows):
@@ -141,28 +164,14 @@ def delivered_rows(program, work, rows):
 
 
 def delivered_table(rows):
-    lines = ["| scene, result | asked | cell taken [mm] | value | off the finest run | off the limit | processor time [s] |",
-             "|---|---|---|---|---|---|---|"]
+    lines = []
     for row in rows:
         series = by_name(row["scene"])
-        lines.append(f"| {series.label}, {row['result']} | {row['accuracy']} | {row['cell']} | {row['value']} "
-                     f"{series.results[row['result']][1]} | {percent(row['from_finest'])} | {percent(row['error'])} | "
-                     f"{row['seconds']} |")
-    return "\n".join(lines)
-
-
-def read(path):
-    if not os.path.exists(path):
-        return []
-    with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
-def write(path, rows):
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+        lines.append([f"{series.label}, {row['result']}", row["accuracy"], row["cell"],
+                      f"{row['value']} {series.results[row['result']][1]}", percent(row["from_finest"]), percent(row["error"]),
+                      row["seconds"]])
+    return markdown_table(["scene, result", "asked", "cell taken [mm]", "value", "off the finest run", "off the limit",
+                           "processor time [s]"], lines)
 
 
 def main():
@@ -171,15 +180,18 @@ def main():
     parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
     parser.add_argument("--jobs", type=int, default=1, help="runs at once")
     parser.add_argument("--only", choices=[series.name for series in SERIES])
+    parser.add_argument("--factors", action="store_true", help="run with smaller and larger time steps")
     parser.add_argument("--deliver", action="store_true", help="run with accuracy, by a program that carries the data")
     parser.add_argument("--table-only", action="store_true", help="no runs: the tables from the data")
     arguments = parser.parse_args()
-    rows = read(DATA)
+    rows = read_table(DATA)
     with tempfile.TemporaryDirectory() as temporary:
         work = arguments.work or temporary
         os.makedirs(work, exist_ok=True)
-        if arguments.deliver:
-            write(DELIVERED, delivered_rows(arguments.program, work, rows))
+        if arguments.factors:
+            write_table(FACTOR_DATA, factor_rows(arguments.program, work, arguments.jobs))
+        elif arguments.deliver:
+            write_table(DELIVERED, delivered_rows(arguments.program, work, rows))
         elif not arguments.table_only:
             chosen = [series for series in SERIES if arguments.only in (None, series.name)]
             cases = [(series, h) for series in chosen for h in sorted(series.cells)]
@@ -189,17 +201,11 @@ def main():
             fresh = {series.name: rows_of(series, summaries[series.name]) for series in chosen}
             rows = [row for series in SERIES
                     for row in fresh.get(series.name, [row for row in rows if row["scene"] == series.name])]
-            write(DATA, rows)
-    with open(PAGE, encoding="utf-8") as file:
-        page = file.read()
-    for name, text in (("resolution", table(rows)), ("delivered", delivered_table(read(DELIVERED)))):
-        page, count = re.subn(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", lambda m: m[1] + text + "\n" + m[2], page,
-                              flags=re.DOTALL)
-        if count != 1:
-            raise Refused(f"docs/accuracy.md has no place for {name}")
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(page)
-    print(table(rows), delivered_table(read(DELIVERED)), sep="\n\n")
+            write_table(DATA, rows)
+    for name, text in (("resolution", table(rows)), ("factors", factor_table(read_table(FACTOR_DATA))),
+                       ("delivered", delivered_table(read_table(DELIVERED)))):
+        replace_block(PAGE, name, text)
+    print(table(rows), delivered_table(read_table(DELIVERED)), sep="\n\n")
 
 
 if __name__ == "__main__":

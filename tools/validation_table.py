@@ -10,8 +10,10 @@ import subprocess
 import time
 import tomllib
 
-from plot_common import Refused
+from plot_common import Refused, summary_of
 
+SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "scenes")
+NO_FILES = ["output.particle_interval=0", "output.checkpoint_steps=0"]  # settings of runs that are to be timed
 
 # Methods that are run with FLIP: with affine velocities their first phase, which the particles do not feel, makes energy
 # (docs/decisions.md).
@@ -207,3 +209,28 @@ def replace_block(path, name, text):
 def markdown_table(heading, rows):
     lines = ["| " + " | ".join(heading) + " |", "|" + "---|" * len(heading)]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def read_table(path):
+    """Rows of a CSV, each {column: text}; none where there is no file."""
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def write_table(path, rows):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def run_scene(program, scene, directory, settings):
+    """The summary of an example scene, run on one thread into the directory unless that holds one already."""
+    if not os.path.exists(os.path.join(directory, "summary.json")):
+        command = [program, "run", os.path.join(SCENES, scene), "-o", directory, "--overwrite", "--set", "numerics.threads=1"]
+        command += [part for setting in settings for part in ("--set", setting)]
+        # By a shell: this process's own memory would be in the peak of a child of its own.
+        subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], check=True, stdout=subprocess.DEVNULL)
+    return summary_of(directory)

@@ -233,6 +233,14 @@ TEST_F(Plan, AccuracyFollowsTheParameterOfTheCells) {
   EXPECT_NE(told.find("cells across \"bar\" (6.4 mm)"), std::string::npos) << told;
 }
 
+TEST_F(Plan, AccuracyTakesTheLongestStepsThatAreStableAndSmallEnough) {
+  const auto told = [&](const std::string& setting) { return decision("time step", {"accuracy=3%", setting}); };
+  EXPECT_EQ(told("numerics.time_step_factor=1").rfind("factor 0.5 (the scene's: 1)", 0), 0U) << told("numerics.time_step_factor=1");
+  EXPECT_EQ(told("numerics.time_step_factor=0.3").rfind("the scene's factor 0.3", 0), 0U);
+  EXPECT_EQ(run("steps", {"accuracy=10%", "numerics.time_step_factor=1", "stop.max_steps=3"})["time"],
+            run("same", {"accuracy=10%", "numerics.time_step_factor=0.5", "stop.max_steps=3"})["time"]);
+}
+
 TEST_F(Plan, AccuracyBeyondTheStudiesOrNotANumberIsRefused) {
   for (const auto& [value, message] : std::vector<std::pair<std::string, std::string>>{
            {"0.0001%", "no study reached an error of 0.0001 %"}, {"fine", "must be a part of the result > 0 and < 1"}, {"0", "must be a part"}, {"120%", "must be a part"}}) {

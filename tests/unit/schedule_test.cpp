@@ -109,6 +109,21 @@ TEST(Schedule, PartsAreEvenToWithinAPencil) {
   }
 }
 
+TEST(Schedule, EveryPencilHasItsTurnWhereNoTeamIsToBeHad) {
+  const auto at = places(7);
+  std::atomic<int> turns{0}, ordered{0};
+#pragma omp parallel num_threads(2)  // inside of which there are no others
+  {
+    Schedule schedule;
+    schedule.set_pencils(at);
+    schedule.divide(4, particles(at.size(), 8));
+    schedule.for_each([&](std::int32_t) { ++turns; });
+    schedule.for_each_in_order([&](std::int32_t) { ++ordered; });
+  }
+  EXPECT_EQ(turns, 2 * static_cast<int>(at.size()));
+  EXPECT_EQ(ordered, 2 * static_cast<int>(at.size()));
+}
+
 TEST(Schedule, MoreThreadsThanPencilsAreNoMatter) {
   Schedule schedule;
   schedule.set_pencils({{0, 0}, {0, 1}});
