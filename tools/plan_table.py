@@ -21,7 +21,7 @@ DATA = os.path.join(ROOT, "docs", "data", "plan.csv")
 PAGE = os.path.join(ROOT, "docs", "performance.md")
 HELD_BEAM = ("clamps=[" + ",".join('{body="beam",region="box",lower=[%s,0,0],upper=[%s,1000,"depth"]}' % ends
                                    for ends in (('"1000-cell"', "1000"), ("-1000", '"cell-1000"'))) + "]")
-# Scene: (label, what makes it whole, result and where it stands in summary.json, unit, of revolution). After the flight axis
+# Scene, and after @ which variant of it: (label, what makes it whole, result and where it stands in summary.json, unit, of revolution). After the flight axis
 # of a scene of revolution has become y, results along z are found there.
 SCENES = {
     "thick_plate": ("thick plate, 575 m/s", ["grid.faces.y_min=free", "grid.lower.1=-60"], "residual velocity",
@@ -35,6 +35,9 @@ SCENES = {
               "speed of the second", ["bodies", "right", "velocity", 0], "m/s", False),
     "two_spheres": ("two spheres", ["grid.faces.y_min=free", "grid.faces.z_min=free", "grid.lower.1=-6", "grid.lower.2=-6"],
                     "speed of the second", ["bodies", "second", "velocity", 0], "", False),
+    "two_spheres@fine": ("two spheres, half the cells", ["grid.faces.y_min=free", "grid.faces.z_min=free", "grid.lower.1=-6",
+                                                         "grid.lower.2=-6", "parameters.cell=0.5"],
+                         "speed of the second", ["bodies", "second", "velocity", 0], "", False),
     "rolling_sphere": ("rolling sphere", ["grid.faces.y_min=free", "grid.lower.1=-2.4"], "way", ["bodies", "sphere", "centre", 0], "m", False),
     "rolling_cylinder": ("rolling cylinder", ["grid.faces.y_min=free", "grid.lower.1=-2"], "way", ["bodies", "cylinder", "centre", 0], "m",
                          False),
@@ -53,7 +56,8 @@ def rows_of(program, work, scene):
     if of_revolution:
         models["axisymmetric"] = ["symmetry=axisymmetric"]
     for model, settings in models.items():
-        summary = run_scene(program, f"{scene}/scene.toml", os.path.join(work, f"{scene}-{model}"), NO_FILES + whole + settings)
+        summary = run_scene(program, f"{scene.split('@')[0]}/scene.toml", os.path.join(work, f"{scene}-{model}"),
+                            NO_FILES + whole + settings)
         value = summary
         for key in path[:-1] + [1] if model == "axisymmetric" and path[-1] == 2 else path:
             value = value[key]
