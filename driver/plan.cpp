@@ -195,7 +195,10 @@ class Planner {
         decide(subject, false, "the half beyond " + name + " would do", plane.reason, "symmetry = \"auto\"");
       } else {
         take_half(plane, settings);
-        decide(subject, true, "the half beyond " + name, plane.reason + off_the_nodes(plane), "symmetry = \"none\"");
+        decide(subject, true, "the half beyond " + name, plane.reason + off_the_nodes(plane),
+               scene_.symmetry == SymmetryScene::axisymmetric
+                   ? "symmetry = \"none\" and the scene written with grid.space = \"axisymmetric\""
+                   : "symmetry = \"none\"");
       }
     }
     apply(settings, "plan (symmetry = \"auto\")");
