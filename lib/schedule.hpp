@@ -127,11 +127,10 @@ class Schedule {
 
   int threads() const { return parts_.threads(); }
   std::int64_t memory_bytes() const;
-  // The neighbours that a pencil waits for, and the order in which one thread works.
+  // The neighbours that a pencil waits for.
   std::vector<std::int32_t> awaited_by(std::int32_t pencil) const {
     return {awaited_.begin() + awaited_begin_[pencil], awaited_.begin() + awaited_begin_[pencil + 1]};
   }
-  const std::vector<std::int32_t>& sequence() const { return sequence_; }
 
  private:
   void wait_for_neighbours(std::int32_t pencil, std::uint32_t round) const {

@@ -49,7 +49,8 @@ def table(rows):
         far = f"{row['beyond']} ({row['calibres']})" if row["beyond"] else "nowhere"
         lines.append([row["case"], far, f"{int(row['particles']):,}", row["seconds"],
                       f"{float(base['seconds']) / float(row['seconds']):.2f}", f"{float(row['value']):.6g}",
-                      f"{100 * (float(row['value']) / float(base['value']) - 1):+.3f} %", f"{100 * float(row['energy_residual']):+.2f} %"])
+                      f"{100 * (float(row['value']) / float(base['value']) - 1):+.3f} %",
+                      f"{100 * float(row['energy_residual']):+.2f} %"])
     return markdown_table(["case", "one particle a cell beyond [mm] (calibres)", "particles", "processor time [s]", "faster",
                            "residual velocity [m/s]", "difference", "energy unaccounted for"], lines)
 

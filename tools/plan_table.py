@@ -14,15 +14,15 @@ import os
 import tempfile
 
 from plot_common import run_main
-from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, write_table
+from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, value_of, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "plan.csv")
 PAGE = os.path.join(ROOT, "docs", "performance.md")
 HELD_BEAM = ("clamps=[" + ",".join('{body="beam",region="box",lower=[%s,0,0],upper=[%s,1000,"depth"]}' % ends
                                    for ends in (('"1000-cell"', "1000"), ("-1000", '"cell-1000"'))) + "]")
-# Scene, and after @ which variant of it: (label, what makes it whole, result and where it stands in summary.json, unit, of revolution). After the flight axis
-# of a scene of revolution has become y, results along z are found there.
+# Scene, and after @ which variant of it: (label, what makes it whole, result and where it stands in summary.json, unit, of
+# revolution). After the flight axis of a scene of revolution has become y, results along z are found there.
 SCENES = {
     "thick_plate": ("thick plate, 575 m/s", ["grid.faces.y_min=free", "grid.lower.1=-60"], "residual velocity",
                     ["results", "residual_velocity"], "m/s", False),
@@ -58,9 +58,7 @@ def rows_of(program, work, scene):
     for model, settings in models.items():
         summary = run_scene(program, f"{scene.split('@')[0]}/scene.toml", os.path.join(work, f"{scene}-{model}"),
                             NO_FILES + whole + settings)
-        value = summary
-        for key in path[:-1] + [1] if model == "axisymmetric" and path[-1] == 2 else path:
-            value = value[key]
+        value = value_of(summary, path[:-1] + [1] if model == "axisymmetric" and path[-1] == 2 else path)
         rows.append({"scene": scene, "model": model, "particles": summary["particles"], "steps": summary["steps"],
                      "seconds": f"{summary['cpu_seconds']['stepping']:.4g}", "megabytes": f"{summary['peak_memory_bytes'] / 1e6:.4g}",
                      "result": result, "value": f"{value:.10g}"})
@@ -83,8 +81,8 @@ def table(rows):
                           f"**{slow / fast:.3g}**", f"{float(full['megabytes']):.3g} / {float(row['megabytes']):.3g}", result,
                           f"{float(full['value']):.5g} {unit}", f"{float(row['value']):.5g} {unit}",
                           f"{100 * difference:+.2f} %" if abs(difference) > 1e-6 else f"{difference:+.1e}"])
-    return markdown_table(["scene", "planned model", "particles", "processor time [s]", "faster", "memory [MB]", "result", "full",
-                           "planned", "difference"], lines)
+    return markdown_table(["scene", "planned model", "particles", "processor time [s]", "faster", "memory [MB]", "result",
+                           "full", "planned", "difference"], lines)
 
 
 def main():

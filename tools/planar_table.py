@@ -97,8 +97,8 @@ def table(rows):
         before = case
         lines.append(cost + [f"{row['result']} [{UNITS[row['result']]}]", f"{other:.4g}", f"{value:.4g}",
                              f"{100 * (value / other - 1):+.2f} %", f"{100 * (value / finest - 1):+.2f} %"])
-    return markdown_table(["scene, cell", "particles", "processor time", "faster", "memory", "result", "quarter", "axisymmetric",
-                           "difference", "discretisation error"], lines)
+    return markdown_table(["scene, cell", "particles", "processor time", "faster", "memory", "result", "quarter",
+                           "axisymmetric", "difference", "discretisation error"], lines)
 
 
 def check(runner, rows):

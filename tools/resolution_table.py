@@ -5,11 +5,11 @@
   resolution_table.py --factors [--program ...]      the same scenes with smaller and larger time steps
   resolution_table.py --deliver [--program ...]      runs with accuracy = 10 % and 3 %, and their errors
 
-Writes docs/data/resolution.csv and docs/data/time_step_factor.csv, which the program carries, and the tables between the markers of docs/accuracy.md. The
-cells are counted across the thinnest body of the scene. The limit of fine cells is f0 of f0 + C h^p, by least squares over all
-cells of the series with p between 1/2 and 4; the error of a run is its distance from that limit. Where p is at one of these
-bounds no limit is claimed: the error is the distance from the finest run, whose own error is not known. Particles shrink with
-the cells. Runs in DIR that are finished are not run again.
+Writes docs/data/resolution.csv and docs/data/time_step_factor.csv, which the program carries, and the tables between the
+markers of docs/accuracy.md. The cells are counted across the thinnest body of the scene. The limit of fine cells is f0 of
+f0 + C h^p, by least squares over all cells of the series with p between 1/2 and 4; the error of a run is its distance from
+that limit. Where p is at one of these bounds no limit is claimed: the error is the distance from the finest run, whose own
+error is not known. Particles shrink with the cells. Runs in DIR that are finished are not run again.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import tempfile
 import numpy as np
 
 from plot_common import run_main
-from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, write_table
+from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, value_of, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "resolution.csv")
@@ -52,12 +52,6 @@ SERIES = [
            lambda h: [f"parameters.cell={h}", f"parameters.spacing={h / 2}"],
            {"final length": (["bodies", "bar", "upper", 1], "mm"), "radius of the foot": (["bodies", "bar", "upper", 0], "mm")}),
 ]
-
-
-def value_of(summary, path):
-    for key in path:
-        summary = summary[key]
-    return float(summary)
 
 
 def edge(series, result, spacing):
@@ -113,7 +107,8 @@ def factor_rows(program, work, jobs):
                     value = value_of(summary, path) + edge(series, result, h / 2)
                     rows.append({"scene": series.name, "result": result, "cells_across": f"{series.thinnest / h:.4g}",
                                  "cell": f"{h:g}", "factor": f"{factor:g}", "value": f"{value:.6g}",
-                                 "change": f"{value / smallest - 1:.5f}", "seconds": f"{summary['cpu_seconds']['stepping']:.3g}"})
+                                 "change": f"{value / smallest - 1:.5f}",
+                                 "seconds": f"{summary['cpu_seconds']['stepping']:.3g}"})
     return rows
 
 
@@ -122,7 +117,8 @@ def factor_table(rows):
     for begin in range(0, len(rows), len(FACTORS)):
         part = rows[begin:begin + len(FACTORS)]
         series = by_name(part[0]["scene"])
-        cells = [f"{row['value']} {series.results[row['result']][1]} ({percent(row['change'])}), {row['seconds']} s" for row in part]
+        unit = series.results[part[0]["result"]][1]
+        cells = [f"{row['value']} {unit} ({percent(row['change'])}), {row['seconds']} s" for row in part]
         lines.append([f"{series.label}, {part[0]['result']}", part[0]["cell"], *cells])
     return markdown_table(["scene, result", "cell [mm]"] + [f"factor {factor:g}" for factor in FACTORS], lines)
 
@@ -168,8 +164,8 @@ def delivered_table(rows):
     for row in rows:
         series = by_name(row["scene"])
         lines.append([f"{series.label}, {row['result']}", row["accuracy"], row["cell"],
-                      f"{row['value']} {series.results[row['result']][1]}", percent(row["from_finest"]), percent(row["error"]),
-                      row["seconds"]])
+                      f"{row['value']} {series.results[row['result']][1]}", percent(row["from_finest"]),
+                      percent(row["error"]), row["seconds"]])
     return markdown_table(["scene, result", "asked", "cell taken [mm]", "value", "off the finest run", "off the limit",
                            "processor time [s]"], lines)
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # All tables, plots and data of docs/validation.md from the built release, and what `accuracy` and the plan of a run go by
-# (docs/accuracy.md, docs/performance.md): runs what is not there yet.
+# (docs/accuracy.md, docs/performance.md): of the former runs what is not there yet, of the latter everything.
 #
 #   tools/validate_all.sh           the fast part: contact methods on the papers' cases (some 4 minutes; CI checks it)
-#   tools/validate_all.sh --full    finer cells, the thick plate, its grid series, the steel ball, the plan too (four hours or so)
+#   tools/validate_all.sh --full    finer cells, thick plate, its grid series, steel ball, the plan too (four hours or so)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

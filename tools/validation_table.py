@@ -212,11 +212,8 @@ def markdown_table(heading, rows):
 
 
 def read_table(path):
-    """Rows of a CSV, each {column: text}; none where there is no file."""
-    if not os.path.exists(path):
-        return []
-    with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    """As read_rows; none where there is no file."""
+    return read_rows(path) if os.path.exists(path) else []
 
 
 def write_table(path, rows):
@@ -229,8 +226,15 @@ def write_table(path, rows):
 def run_scene(program, scene, directory, settings):
     """The summary of an example scene, run on one thread into the directory unless that holds one already."""
     if not os.path.exists(os.path.join(directory, "summary.json")):
-        command = [program, "run", os.path.join(SCENES, scene), "-o", directory, "--overwrite", "--set", "numerics.threads=1"]
-        command += [part for setting in settings for part in ("--set", setting)]
+        command = [program, "run", os.path.join(SCENES, scene), "-o", directory, "--overwrite"]
+        command += [part for setting in ["numerics.threads=1", *settings] for part in ("--set", setting)]
         # By a shell: this process's own memory would be in the peak of a child of its own.
         subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], check=True, stdout=subprocess.DEVNULL)
     return summary_of(directory)
+
+
+def value_of(summary, path):
+    """The number that stands in a summary under these keys."""
+    for key in path:
+        summary = summary[key]
+    return float(summary)
