@@ -45,6 +45,9 @@ SCENES = {
                          ["bodies", "beam", "velocity", 1], "m/s", False),
     "cylinder_on_beam": ("cylinder on a beam", ["grid.faces.x_min=free", "grid.lower.0=-1500", HELD_BEAM], "centre of the beam",
                          ["bodies", "beam", "centre", 1], "mm", False),
+    "thick_target": ("thick target", ["grid.faces.x_min=free", "grid.faces.y_min=free", 'grid.lower.0="-cell*(rint(half_width/cell)+4)"',
+                                      'grid.lower.1="-cell*(rint(half_width/cell)+4)"'],
+                     "speed of the ball", ["bodies", "ball", "velocity", 2], "m/s", False),
     "four_spheres": ("four spheres", [], "speed of the striker", ["bodies", "striker", "velocity", 2], "m/s", False),
 }
 
