@@ -114,11 +114,13 @@ contains
   end subroutine set_grid
 
   subroutine set_numerics(self, shape_function, time_step_factor, maximum_time_step, threads, gravity, transfer, &
-                          update_order, pic_fraction, xpic_order, drop_debris, status)
+                          update_order, pic_fraction, xpic_order, drop_debris, skip_resting, energy_warning, &
+                          energy_limit, status)
     class(ogive_simulation), intent(inout) :: self
     integer(c_int32_t), intent(in), optional :: shape_function, threads, transfer, update_order, xpic_order
     real(c_double), intent(in), optional :: time_step_factor, maximum_time_step, gravity(3), pic_fraction
-    logical, intent(in), optional :: drop_debris
+    real(c_double), intent(in), optional :: energy_warning, energy_limit
+    logical, intent(in), optional :: drop_debris, skip_resting
     integer(c_int32_t), intent(out), optional :: status
     type(ogive_numerics_def) :: def
     call ogive_numerics_def_init(def, c_sizeof(def))
@@ -132,6 +134,9 @@ contains
     if (present(pic_fraction)) def%pic_fraction = pic_fraction
     if (present(xpic_order)) def%xpic_order = xpic_order
     if (present(drop_debris)) def%drop_debris = merge(1_c_int32_t, 0_c_int32_t, drop_debris)
+    if (present(skip_resting)) def%skip_resting = merge(1_c_int32_t, 0_c_int32_t, skip_resting)
+    if (present(energy_warning)) def%energy_warning = energy_warning
+    if (present(energy_limit)) def%energy_limit = energy_limit
     self%status = ogive_world_set_numerics(self%world, def)
     if (present(status)) status = self%status
   end subroutine set_numerics
