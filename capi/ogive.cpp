@@ -871,8 +871,13 @@ int32_t ogive_abi_version(void) { return OGIVE_ABI; }
 
 ogive_status ogive_world_create(ogive_world** world) {
   if (!world) return OGIVE_ERROR_ARGUMENT;
-  *world = new (std::nothrow) ogive_world;
-  return *world ? OGIVE_OK : OGIVE_ERROR_MEMORY;
+  *world = nullptr;
+  try {
+    *world = new ogive_world;
+    return OGIVE_OK;
+  } catch (const std::bad_alloc&) {
+    return OGIVE_ERROR_MEMORY;
+  }
 }
 
 void ogive_world_destroy(ogive_world* world) { delete world; }

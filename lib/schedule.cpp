@@ -19,15 +19,20 @@ int colour(const Place& place) { return (place[0] & 1) * 2 + (place[1] & 1); }
 
 void Parts::assign(int threads, const std::vector<std::int32_t>& part_of, const std::vector<std::int32_t>& rank,
                    std::int32_t run) {
-  order_.resize(part_of.size());
-  std::iota(order_.begin(), order_.end(), 0);
-  std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
+  std::vector<std::int32_t> order(part_of.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
     return std::pair(part_of[a], rank[a]) < std::pair(part_of[b], rank[b]);
   });
-  first_.assign(static_cast<std::size_t>(threads) + 1, 0);
-  for (const std::int32_t part : part_of) ++first_[part + 1];
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  cursors_ = std::vector<Cursor>(static_cast<std::size_t>(threads));
+  std::vector<std::int32_t> first(static_cast<std::size_t>(threads) + 1, 0);
+  for (const std::int32_t part : part_of) ++first[part + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Cursor> cursors(static_cast<std::size_t>(threads));
+  // From here on nothing fails: parts that do not fit together would make threads wait without end.
+  order_.swap(order);
+  first_.swap(first);
+  cursors_.swap(cursors);
+  threads_ = threads;
   run_ = run;
 }
 

@@ -68,16 +68,17 @@ class Parts {
     }
   }
 
-  int threads() const { return static_cast<int>(first_.size()) - 1; }
+  int threads() const { return threads_; }
   std::int64_t memory_bytes() const;
 
  private:
   struct alignas(64) Cursor {
     std::atomic<std::int32_t> next{0};
   };
+  int threads_ = 1;
   std::int32_t run_ = 1;
   std::vector<std::int32_t> order_;                // part by part
-  std::vector<std::int32_t> first_ = {0, 0};       // of each part in order_, and the end
+  std::vector<std::int32_t> first_;                // of each part in order_, and the end
   std::vector<Cursor> cursors_;                    // by part
 };
 
