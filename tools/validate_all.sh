@@ -19,6 +19,7 @@ tools/validate_convergence.py --contact
 tools/validate_steel_ball.py
 tools/resolution_table.py
 tools/resolution_table.py --factors
+cmake --build --preset release  # the program carries what was just measured
 tools/resolution_table.py --deliver
 tools/plan_table.py
 tools/coarse_table.py
