@@ -148,7 +148,7 @@ struct Workspace {
   AlignedVector<ContactRecord> contacts;  // 64 a slot that has them
   AlignedVector<ContactStress> contact_stress;  // likewise, where a contact method asks for it
   std::vector<std::uint8_t> occupied;     // likewise: which of a node's eight cells hold particles
-  std::vector<GroupLinks> links;          // ordered by pencil (z, y, x), body, block x
+  std::vector<GroupLinks> links;          // ordered by pencil (z, y), body, block x
   std::vector<KernelGroup> kernel_groups; // what kernels are told of each link; all but the time step
   std::vector<Pencil> pencils;
   Schedule schedule;                      // of the pencils
