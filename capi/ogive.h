@@ -444,8 +444,8 @@ OGIVE_API ogive_status ogive_solid_particles(ogive_world* world, const ogive_sol
  * xyz[3 * vertex_count] [L], finite, and triangle_count >= 4 triangles corners[3 * triangle_count] of vertices numbered from 0,
  * counter-clockwise from outside. It must be closed and oriented, each edge shared by two triangles; what ogive_mesh_check
  * accepts is (ogive_mesh_surface gives it). A body that symmetry faces cut is given whole, as its particles are. A rigid body
- * carries it with its motion, a deformable one moves the vertices with its own velocities. A rigid body of
- * ogive_body_add_solid has its exact surface without this call. Before ogive_world_prepare; another call replaces it. */
+ * carries it with its motion, a deformable one moves the vertices with its own velocities. A body of ogive_body_add_solid has its
+ * surface without this call: exact where it is rigid, else triangles of half a cell where a rule asks for them. Before ogive_world_prepare; another call replaces it. */
 OGIVE_API ogive_status ogive_body_set_surface(ogive_world* world, ogive_body_id body, int64_t vertex_count, const double* xyz,
                                               int64_t triangle_count, const int32_t* corners);
 /* The same from a built-in solid, exact with sharp tip and edges, for a rigid body given by its particles; lattice and spacing
@@ -478,8 +478,9 @@ enum {
   OGIVE_DETECTION_GAP = 1,         /* and the bodies' nearest sides at the node, measured along the normal, are closer than
                                       gap_offset cells (docs/theory.md) */
   OGIVE_DETECTION_SURFACE = 2      /* normal and gap from the signed distance to the true surface of one of the bodies (or to
-                                      the wall); `normal` and `master` are not used but where two bodies of one kind both
-                                      have a surface: the master's is taken, or the first body's. See
+                                      the wall); `normal` and `master` are not used but where two bodies of one kind
+                                      (rigid, total, updated Lagrangian; the first named has the surface) both have one: the
+                                      master's is taken, or the first body's. See
                                       ogive_body_set_surface */
 };
 /* A rule of contact. */

@@ -28,8 +28,9 @@ constexpr ElementType element_type() {
 }
 
 // Grows by one with each set of arrays that is added. 2: loads, forces of the host, sums over pairs. 3: the energy watch, surfaces,
-// total Lagrangian bodies. 4: dropped debris, the end of the energy exchange, groups at rest.
-constexpr std::int32_t save_version = 4;
+// total Lagrangian bodies. 4: dropped debris, the end of the energy exchange, groups at rest. 5: surfaces of total
+// Lagrangian bodies.
+constexpr std::int32_t save_version = 5;
 
 class Archive {
  public:

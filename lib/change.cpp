@@ -65,6 +65,9 @@ void require_consistent_change(const Model& before, const Model& after, const St
     const Material &old = before.material_of(static_cast<int>(b)), &next = after.material_of(static_cast<int>(b));
     if (!before.bodies[b].rigid() && !before.numerics.stress_first() && old.viscous() != next.viscous())
       refuse("material \"" + old.name + "\": viscosity", "particles keep its pressure where the stress comes last");
+    const Body& body = after.bodies[b];
+    if (!body.rigid() && body.has_surface() && state.bodies[b].surface_vertices.size() != body.surface.vertices.size())
+      refuse("contact detection", "the surface of body \"" + body.name + "\" moves with it from the start, and has not");
     check_failure(before.bodies[b], old, next, state.bodies[b]);
   }
 }

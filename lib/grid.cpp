@@ -718,7 +718,9 @@ std::int64_t Workspace::memory_bytes() const {
                        bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
                        bytes(driven) + bytes(load_sums) + schedule.memory_bytes() + slot_parts.memory_bytes();
   for (const BlockContacts& block : block_contacts) total += bytes(block.fields) + bytes(block.pairs) + bytes(block.nodes);
-  for (const PlacedSurface& placed : surfaces) total += placed.surface.memory_bytes();
+  for (const PlacedSurface& placed : surfaces)
+    total += placed.surface.memory_bytes() + bytes(placed.vertex_ends) + bytes(placed.vertex_nodes) +
+             bytes(placed.vertex_particle) + bytes(placed.vertex_inward);
   total += points.memory_bytes();
   for (const FaceNodes& face : faces) total += bytes(face.pairs) + bytes(face.plane);
   if (reference_grid) total += reference_grid->memory_bytes();

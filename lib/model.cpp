@@ -10,6 +10,7 @@
 #include "contact/normal.hpp"
 #include "error.hpp"
 #include "surface/meeting.hpp"
+#include "surface/tessellate.hpp"
 
 namespace ogive {
 namespace {
@@ -217,6 +218,29 @@ void Model::validate_planar(const ContactRule& rule, const char* field) const {
                 std::string(field) + ": must be \"gap\" or \"shared_node\" in a two-dimensional model, got \"surface\"");
 }
 
+// Total Lagrangian bodies wherever contact by surfaces meets them, and one of each pair that has no surface otherwise.
+void Model::cover_solids() {
+  const auto cover = [&](std::size_t b) {
+    SurfaceDef& surface = bodies[b].surface;
+    if (bodies[b].rigid() || !surface.given() || surface.kind == SurfaceKind::Triangles) return;
+    surface = tessellate(surface, 0.5 * grid.cell_size);
+  };
+  for (const Wall& wall : walls)
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (by_surface(wall.rule) && bodies[b].total_lagrangian()) cover(b);
+  for (std::size_t a = 0; a < bodies.size() && own_fields; ++a)
+    for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+      const ContactRule& rule = rule_of(static_cast<int>(a), static_cast<int>(b));
+      if (!by_surface(rule)) continue;
+      for (const std::size_t body : {a, b})
+        if (bodies[body].total_lagrangian()) cover(body);
+      if (surface_owner(*this, static_cast<int>(a), static_cast<int>(b)) >= 0) continue;
+      const std::size_t first = rule.master == static_cast<int>(b) ? b : a;
+      cover(first);
+      if (!bodies[first].has_surface()) cover(first == a ? b : a);
+    }
+}
+
 void Model::validate_lagrangian() const {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].total_lagrangian()) continue;
@@ -225,16 +249,6 @@ void Model::validate_lagrangian() const {
       throw Error(ErrorKind::Argument, prefix + "a three-dimensional model: space must be \"three_dimensional\"");
     if (numerics.shape_function == ShapeFunction::Gimp)
       throw Error(ErrorKind::Argument, prefix + "shape_function \"linear\" or \"quadratic_bspline\", got \"gimp\"");
-    const auto refuse_surface = [&](const ContactRule& rule, const std::string& whom) {
-      if (rule.method != ContactMethod::SingleField && by_surface(rule))
-        throw Error(ErrorKind::Argument, prefix + "contact detection \"gap\" or \"shared_node\" with " + whom +
-                                             ", got \"surface\"");
-    };
-    for (std::size_t other = 0; other < bodies.size(); ++other)
-      if (other != b)
-        refuse_surface(rule_of(static_cast<int>(std::min(b, other)), static_cast<int>(std::max(b, other))),
-                       "\"" + bodies[other].name + "\"");
-    for (const Wall& wall : walls) refuse_surface(wall.rule, "walls");
   }
 }
 
@@ -384,6 +398,7 @@ void Model::complete() {
                                                  "alone)");
         }
   }
+  cover_solids();
   for (std::size_t a = 0; a < bodies.size() && own_fields; ++a)
     for (std::size_t b = a + 1; b < bodies.size(); ++b) {
       const ContactRule& rule = rule_of(static_cast<int>(a), static_cast<int>(b));
@@ -391,7 +406,7 @@ void Model::complete() {
       if (surface_owner(*this, static_cast<int>(a), static_cast<int>(b)) < 0)
         throw Error(ErrorKind::Argument, "contact detection: \"surface\" needs the surface of \"" + bodies[a].name +
                                              "\" or \"" + bodies[b].name +
-                                             "\": a built-in solid that is rigid, or triangles (ogive_body_set_surface)");
+                                             "\": a built-in solid, or triangles (ogive_body_set_surface)");
     }
   if (!deformable && !std::isfinite(numerics.maximum_time_step))
     throw Error(ErrorKind::Argument, "maximum_time_step: must be given where every body is rigid (no wave limits the step)");
@@ -517,6 +532,8 @@ void Model::exchange(Archive& a) {
     a.value(at + "formulation", bodies[i].formulation);
     if (a.version() >= 3) exchange_surface(a, at + "surface/", bodies[i].surface);
     if (bodies[i].total_lagrangian()) {
+      // Before version 5 such bodies had no surface that contact could use, and none moved with them.
+      if (a.loading() && a.version() < 5) bodies[i].surface = {};
       a.value(at + "distortion_limit", bodies[i].distortion_limit);
       a.value(at + "when_distorted", bodies[i].when_distorted);
     }

@@ -186,10 +186,8 @@ struct Body {
   double distortion_limit = 10;
   WhenDistorted when_distorted = WhenDistorted::Update;
 
-  // Whether contact can use it: a deformable body carries vertices with the grid, which a total Lagrangian one does not.
-  bool has_surface() const {
-    return surface.given() && !total_lagrangian() && (rigid() || surface.kind == SurfaceKind::Triangles);
-  }
+  // Whether contact can use it: a deformable body carries vertices.
+  bool has_surface() const { return surface.given() && (rigid() || surface.kind == SurfaceKind::Triangles); }
   bool rigid() const { return formulation == Formulation::RigidFree || formulation == Formulation::RigidPrescribed; }
   bool total_lagrangian() const { return formulation == Formulation::TotalLagrangian; }
   bool prescribed() const { return formulation == Formulation::RigidPrescribed; }
@@ -259,6 +257,7 @@ struct Model {
   void validate_motion(const std::vector<MotionKnot>& motion) const;
   void validate_distortion(const Body& body) const;
   void validate_stop(const Stop& conditions) const;
+  void cover_solids();  // triangles for bodies that deform and whose surface contact asks for
   void complete();  // checks what needs the whole model and fills the derived values
 
   void exchange(Archive& archive);  // saves or loads every field

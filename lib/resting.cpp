@@ -159,7 +159,7 @@ bool rests(const State& state, const Workspace& workspace, const GroupLinks& lin
 // Sets of nodes: a bit each, 64 a block, whatever the field.
 class Nodes {
  public:
-  explicit Nodes(const Workspace& workspace) : workspace_(workspace), block_of_(workspace.slots.size()) {
+  explicit Nodes(const Workspace& workspace) : block_of_(workspace.slots.size()) {
     std::int32_t blocks = 0;
     for (std::size_t s = 0; s < block_of_.size(); ++s) {
       if (s > 0 && workspace.slots[s].block != workspace.slots[s - 1].block) ++blocks;
@@ -197,7 +197,6 @@ class Nodes {
     return false;
   }
 
-  const Workspace& workspace_;
   std::vector<std::int32_t> block_of_;
   std::vector<std::uint64_t> bits_;
 };

@@ -11,7 +11,7 @@
 // makes a step safe, with Nesterov's acceleration, which begins anew where it would lead uphill (O'Donoghue, Candes 2015). No
 // order of points is preferred, so that mirrored models have mirrored impulses.
 //
-// The stencil of an owner that deforms, at q_p, is stencil.hpp's for surfaces, which leaves out nodes with next to no mass.
+// The stencil of an updated Lagrangian owner, at q_p, is stencil.hpp's for surfaces, which leaves out nodes with next to no mass.
 #include "contact/points.hpp"
 
 #include <algorithm>
@@ -44,13 +44,58 @@ class Feeler {
 
   void feel(const GroupLinks& link, const KernelGroup& group, std::vector<ContactPoint>& points) const {
     points.clear();
+    if (state_.bodies[link.body].lagrangian && workspace_.surfaces[link.body].used) return;  // its vertices feel
     for (std::int32_t w = 0; w < static_cast<std::int32_t>(model_.walls.size()); ++w)
       if (by_surface(model_.walls[w].rule)) feel(link, group, -1 - w, points);
     for (std::int32_t b = 0; b < static_cast<std::int32_t>(workspace_.surfaces.size()); ++b)
       if (workspace_.surfaces[b].used && b != link.body) feel(link, group, b, points);
   }
 
+  // Points of a total Lagrangian body's vertices.
+  void feel_vertices(std::int32_t body, std::vector<ContactPoint>& points) const {
+    points.clear();
+    for (std::int32_t w = 0; w < static_cast<std::int32_t>(model_.walls.size()); ++w)
+      if (by_surface(model_.walls[w].rule)) feel_vertices(body, -1 - w, points);
+    for (std::int32_t b = 0; b < static_cast<std::int32_t>(workspace_.surfaces.size()); ++b)
+      if (workspace_.surfaces[b].used && b != body && met_at_points(model_, body, b) && surface_owner(model_, body, b) == b)
+        feel_vertices(body, b, points);
+  }
+
  private:
+  void feel_vertices(std::int32_t body, std::int32_t owner, std::vector<ContactPoint>& points) const {
+    const PlacedSurface& own = workspace_.surfaces[body];
+    const double deep = deepest * model_.grid.cell_size;
+    if (owner >= 0) {
+      const PlacedSurface& other = workspace_.surfaces[owner];
+      for (int c = 0; c < 3; ++c)
+        if (own.upper[c] < other.lower[c] - ahead_ || own.lower[c] > other.upper[c] + ahead_) return;
+    }
+    const std::vector<double>& vertices = state_.bodies[body].surface_vertices;
+    std::int32_t hint = -1;
+    for (std::size_t v = 0; v < vertices.size() / 3; ++v) {
+      if (!own.surface.has_vertex(static_cast<std::int64_t>(v))) continue;
+      const Vector3 x = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]};
+      Vector3 on_face{};
+      if (!inside_faces(x, on_face)) continue;
+      SurfacePoint found;
+      if (!nearest_of_owner(model_, workspace_, owner, x, deep, found, &hint)) continue;
+      offer(body, owner, x, found, found.distance, on_face, own.vertex_particle[v], static_cast<std::int32_t>(v), points);
+    }
+  }
+
+  // False for what lies beyond a mirror.
+  bool inside_faces(const Vector3& x, Vector3& on_face) const {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        if (model_.grid.face[2 * axis + side] == Face::Free) continue;
+        const double inside =
+            side == 0 ? x[axis] - model_.grid.domain_min[axis] : model_.grid.domain_max[axis] - x[axis];
+        if (inside < -1e-9 * model_.grid.cell_size) return false;
+        if (inside <= 1e-9 * model_.grid.cell_size) on_face[axis] = 1;
+      }
+    return true;
+  }
+
   void feel(const GroupLinks& link, const KernelGroup& group, std::int32_t owner, std::vector<ContactPoint>& points) const {
     // The largest half size is that of a whole cell.
     const double h = model_.grid.cell_size, reach = 0.5 * h + ahead_;
@@ -79,44 +124,47 @@ class Feeler {
       SurfacePoint found;
       if (!nearest_of_owner(model_, workspace_, owner, middle, 0.5 * length(across) + reach, found, &hint)) return;
     }
-    const ContactRule& rule = owner < 0 ? model_.walls[-1 - owner].rule : model_.rule_of(link.body, owner);
-    const BodyState& body = state_.bodies[link.body];
+    const BodyState& body = workspace_.particles_of(state_, link.body);
     const double inverse_density = 1.0 / model_.material_of(link.body).density;
     for (std::int64_t p = group.begin; p < group.begin + body.groups[link.group].count; ++p) {
       const double* r = &body.position[4 * p];
       const Vector3 x = {r[0], r[1], r[2]};
       double volume = r[3] * inverse_density * std::min(body.volume_ratio[p], 1.0);
       Vector3 on_face{};
-      for (int axis = 0; axis < 3; ++axis)
-        for (int side = 0; side < 2; ++side) {
-          if (model_.grid.face[2 * axis + side] == Face::Free) continue;
-          const double plane = side == 0 ? model_.grid.domain_min[axis] : model_.grid.domain_max[axis];
-          if (std::abs(plane - x[axis]) > 1e-9 * h) continue;
-          volume *= 2;  // half of a particle that the face cuts
-          on_face[axis] = 1;
-        }
+      inside_faces(x, on_face);
+      for (const double on : on_face)
+        if (on != 0) volume *= 2;  // half of a particle that the face cuts
       const double half = 0.5 * std::cbrt(volume);
       SurfacePoint found;
       if (!nearest_of_owner(model_, workspace_, owner, x, half + deepest * h, found, &hint)) continue;
-      const double gap = found.distance - half;
-      if (gap > ahead_) continue;
-      ContactPoint point;
-      point.method = &contact_method(rule.method);
-      if (point.method->has_friction) point.friction = rule.friction;
-      point.gap = std::max(gap, 0.0);
-      point.normal = times(-1, found.normal);
-      for (int axis = 0; axis < 3; ++axis)
-        if (on_face[axis] != 0) point.normal[axis] = 0;
-      if (!make_unit(point.normal)) continue;
-      point.particle = p;
-      for (int axis = 0; axis < 3; ++axis)
-        if (on_face[axis] != 0) point.part *= 0.5;
-      point.a.body = link.body;
-      point.a.at = x;
-      point.b.body = owner;
-      point.b.at = minus(x, times(found.distance, found.normal));
-      points.push_back(point);
+      offer(link.body, owner, x, found, found.distance - half, on_face, state_.bodies[link.body].lagrangian ? body.number[p] : p, -1,
+            points);
     }
+  }
+
+  void offer(std::int32_t body, std::int32_t owner, const Vector3& x, const SurfacePoint& found, double gap, const Vector3& on_face,
+             std::int64_t particle, std::int32_t vertex, std::vector<ContactPoint>& points) const {
+    if (gap > ahead_) return;
+    const ContactRule& rule = owner < 0 ? model_.walls[-1 - owner].rule : model_.rule_of(body, owner);
+    ContactPoint point;
+    point.method = &contact_method(rule.method);
+    if (point.method->has_friction) point.friction = rule.friction;
+    point.gap = std::max(gap, 0.0);
+    point.normal = times(-1, found.normal);
+    for (int axis = 0; axis < 3; ++axis)
+      if (on_face[axis] != 0) {
+        point.normal[axis] = 0;
+        point.part *= 0.5;
+      }
+    if (!make_unit(point.normal)) return;
+    point.particle = particle;
+    point.vertex = vertex;
+    point.triangle = found.triangle;
+    point.a.body = body;
+    point.a.at = x;
+    point.b.body = owner;
+    point.b.at = minus(x, times(found.distance, found.normal));
+    points.push_back(point);
   }
 
   const Model& model_;
@@ -126,6 +174,15 @@ class Feeler {
 };
 
 // ------------------------------------------------------------------------------------------------------------- solving
+
+bool on_reference_grid(const Workspace& workspace, std::int32_t node) {
+  return static_cast<std::size_t>(node) >= workspace.nodes.size();
+}
+
+NodeRecord& node_record(Workspace& workspace, std::int32_t node) {
+  return on_reference_grid(workspace, node) ? workspace.reference_grid->nodes[node - workspace.nodes.size()]
+                                            : workspace.nodes[node];
+}
 
 // One phase: on the mapped velocities, or on the trial velocities.
 class Phase {
@@ -172,9 +229,12 @@ class Phase {
     }
   }
 
+  NodeRecord& record(std::int32_t node) const { return node_record(workspace_, node); }
+
+  // Total Lagrangian bodies have no later mapping: theirs is the velocity at the end.
   double* velocity_record(std::int32_t node) const {
-    NodeRecord& record = workspace_.nodes[node];
-    return at_end_ ? record.f : record.v;
+    const bool end = at_end_ || (use_ == StartUse::Strain && on_reference_grid(workspace_, node));
+    return end ? record(node).f : record(node).v;
   }
 
   Vector3 velocity(const PointSide& side) const {
@@ -197,8 +257,8 @@ class Phase {
       Vector3 v{};
       for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
         const PointNode& entry = workspace_.points.stencils[e];
-        const NodeRecord& record = workspace_.nodes[entry.node];
-        for (int c = 0; c < 3; ++c) v[c] += 0.5 * entry.weight[c] * (record.v[c] + record.f[c]);
+        const NodeRecord& node = record(entry.node);
+        for (int c = 0; c < 3; ++c) v[c] += 0.5 * entry.weight[c] * (node.v[c] + node.f[c]);
       }
       if (side.rigid < 0) return v;
       return times(0.5, plus(side.before, velocity(side)));
@@ -218,7 +278,7 @@ class Phase {
     for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
       const PointNode& entry = workspace_.points.stencils[e];
       double* node = velocity_record(entry.node);
-      const double inverse = 1 / workspace_.nodes[entry.node].v[3];
+      const double inverse = 1 / record(entry.node).v[3];
       for (int c = 0; c < 3; ++c) node[c] += entry.weight[c] * impulse[c] * inverse;
     }
   }
@@ -250,7 +310,7 @@ class Phase {
         }
         for (std::int32_t e = side->first; e < side->first + side->count; ++e) {
           const std::int32_t node = points.stencils[e].node;
-          point->mobility += share_of(points.stencils[e]) * points.share[node] / (point->part * workspace_.nodes[node].v[3]);
+          point->mobility += share_of(points.stencils[e]) * points.share[node] / (point->part * record(node).v[3]);
         }
       }
     }
@@ -279,14 +339,15 @@ class Phase {
       if (side->rigid >= 0) side->before = velocity(*side);
     point.impulse = point.ahead = {};
     point.constraint = {};
-    const bool strains = point.a.rigid < 0 || (point.b.rigid < 0 && point.b.count > 0);
+    const auto by_grid = [](const PointSide& side) { return side.rigid < 0 && !side.lagrangian && side.count > 0; };
+    const bool strains = by_grid(point.a) || by_grid(point.b);
     const bool acts = at_end_ || (strains && (use_ != StartUse::Motion || !point.method->start_reaches_particles));
     const auto rule = at_end_ ? point.method->at_end : point.method->at_start;
     if (!rule || !acts) return false;
     PairView view{point.normal,   {point.normal, times(-1, point.normal)}, point.mapped, point.adjusted, point.found,
                   point.pressed, 0};
     if (!at_end_) view.mapped = view.adjusted = point.found;
-    if (point.method->needs_stress && point.a.rigid < 0) {
+    if (point.method->needs_stress && point.a.rigid < 0 && point.particle >= 0) {
       const BodyState& body = state_.bodies[point.a.body];
       for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -348,11 +409,17 @@ void book(State& state, Workspace& workspace, const Phase& phase, bool at_end, d
     const double work = (heat ? 0 : tangential_work) - (push_of(point) + point.start_push) * dot(point.normal, mean);
     state.ledger.friction_dissipation += friction;
     state.ledger.contact_work += work;
+    if (at_end && point.booked) {
+      // As at nodes, contact.cpp: an impulse does the work of the mean of the velocities half a step before and after it.
+      const Vector3 about = times(0.5, plus(point.mapped, phase.relative(point)));
+      state.ledger.contact_dissipation -= dot(impulse, about) + friction;
+    }
     for (const PointSide* side : {&point.a, &point.b}) {
       const Vector3 own = times(side == &point.a ? 1 : -1, impulse);
       if (!reaches) {
         const Vector3 seen = times(grid_part, own), unseen = times(1 - grid_part, own);
         if (side->body < 0) add(state.ledger.boundary_impulse, times(-1, seen));
+        if (side->lagrangian) book_faces(state, workspace, *side, seen);
         if (side->rigid < 0) continue;
         RigidMotion& body = workspace.rigid[side->rigid];
         add(body.impulse, seen);
@@ -393,9 +460,23 @@ void book(State& state, Workspace& workspace, const Phase& phase, bool at_end, d
   }
 }
 
-// A particle's memory of contact stands beside those of nodes.
+// Relative velocity of the total Lagrangian sides at the end of the step.
+Vector3 end_velocity(Workspace& workspace, const ContactPoint& point) {
+  Vector3 v{};
+  for (const PointSide* side : {&point.a, &point.b})
+    for (std::int32_t e = side->first; side->lagrangian && e < side->first + side->count; ++e) {
+      const PointNode& entry = workspace.points.stencils[e];
+      const double* node = node_record(workspace, entry.node).f;
+      for (int c = 0; c < 3; ++c) v[c] += (side == &point.a ? 1 : -1) * entry.weight[c] * node[c];
+    }
+  return v;
+}
+
+// A particle's or vertex's memory of contact stands beside those of nodes.
 std::array<std::int32_t, 3> memory_of(const State& state, const ContactPoint& point) {
-  return {state.bodies[point.a.body].number[point.particle], std::numeric_limits<std::int32_t>::min(), 0};
+  constexpr std::int32_t beside = std::numeric_limits<std::int32_t>::min();
+  if (point.vertex >= 0) return {point.vertex, beside, 1};
+  return {state.bodies[point.a.body].number[point.particle], beside, 0};
 }
 
 }  // namespace
@@ -420,9 +501,10 @@ void find_points(const Model& model, const State& state, Workspace& workspace) {
   points.points.clear();
   points.stencils.clear();
   points.start.clear();
-  points.seen.resize(workspace.nodes.size());
-  points.share.resize(workspace.nodes.size());
-  points.found.resize(workspace.links.size());
+  const std::size_t nodes = workspace.nodes.size() + (workspace.reference_grid ? workspace.reference_grid->nodes.size() : 0);
+  points.seen.resize(nodes);
+  points.share.resize(nodes);
+  points.found.resize(workspace.links.size() + model.bodies.size());
   const Feeler feeler(model, state, workspace);
   std::exception_ptr failure;
   const std::int64_t links = static_cast<std::int64_t>(workspace.links.size());
@@ -434,24 +516,63 @@ void find_points(const Model& model, const State& state, Workspace& workspace) {
       failure = std::current_exception();
     }
   if (failure) std::rethrow_exception(failure);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    std::vector<ContactPoint>& found = points.found[workspace.links.size() + b];
+    found.clear();
+    if (state.bodies[b].lagrangian && workspace.surfaces[b].used) feeler.feel_vertices(static_cast<std::int32_t>(b), found);
+  }
   std::vector<std::int32_t> rigid_of(model.bodies.size(), -1);
   for (std::size_t r = 0; r < workspace.rigid.size(); ++r)
     rigid_of[workspace.rigid[r].body] = static_cast<std::int32_t>(r);
   const Stenciler stenciler(model, workspace);
-  const auto make = [&](PointSide& side, bool on_surface) {
-    side.first = static_cast<std::int32_t>(points.stencils.size());
-    stenciler.make(model.field_of(side.body), side.at, on_surface, points.stencils);
+  const Stenciler at_rest(model, workspace.reference_grid ? *workspace.reference_grid : workspace);
+  const auto on_reference = [&](PointSide& side) {
     side.count = static_cast<std::int32_t>(points.stencils.size()) - side.first;
+    for (std::int32_t e = side.first; e < side.first + side.count; ++e)
+      points.stencils[e].node += static_cast<std::int32_t>(workspace.nodes.size());
   };
+  const auto make = [&](ContactPoint& point, PointSide& side) {
+    side.first = static_cast<std::int32_t>(points.stencils.size());
+    if (!side.lagrangian) {
+      stenciler.make(model.field_of(side.body), side.at, &side == &point.b, points.stencils);
+      side.count = static_cast<std::int32_t>(points.stencils.size()) - side.first;
+      return;
+    }
+    const PlacedSurface& placed = workspace.surfaces[side.body];
+    if (&side == &point.a && point.vertex >= 0) {
+      const auto first = point.vertex == 0 ? 0 : placed.vertex_ends[point.vertex - 1];
+      points.stencils.insert(points.stencils.end(), placed.vertex_nodes.begin() + first,
+                             placed.vertex_nodes.begin() + placed.vertex_ends[point.vertex]);
+    } else if (&side == &point.a) {
+      const double* X = &state.bodies[side.body].reference.position[4 * point.particle];
+      at_rest.make(side.body, {X[0], X[1], X[2]}, false, points.stencils);
+    } else {
+      const std::vector<double>& rest = model.bodies[side.body].surface.vertices;
+      const Surface::Corners corners = placed.surface.corners_at(point.triangle, side.at);
+      Vector3 X{}, inward{};
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t v = corners.vertex[k];
+        add(X, times(corners.share[k], {rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]}));
+        add(inward, times(corners.share[k], placed.vertex_inward[v]));
+      }
+      at_rest.make_linear(side.body, X, plus(X, inward), points.stencils);
+    }
+    on_reference(side);
+  };
+  const Phase phase(state, workspace, workspace.rigid, false, StartUse::Motion, 1);
   for (const auto& list : points.found)
     for (ContactPoint point : list) {
       for (PointSide* side : {&point.a, &point.b}) {
         side->rigid = side->body < 0 ? -1 : rigid_of[side->body];
+        side->lagrangian = side->body >= 0 && state.bodies[side->body].lagrangian;
         side->fixed = side->body < 0 || (side->rigid >= 0 && workspace.rigid[side->rigid].prescribed);
       }
       if (point.a.fixed && point.b.fixed) continue;
-      if (point.a.rigid < 0) make(point.a, false);
-      if (point.b.body >= 0 && point.b.rigid < 0) make(point.b, true);
+      if (point.a.rigid < 0) make(point, point.a);
+      if (point.b.body >= 0 && point.b.rigid < 0) make(point, point.b);
+      const auto strains = [](const PointSide& side) { return side.body >= 0 && side.rigid < 0 && !side.lagrangian; };
+      point.booked = (point.a.lagrangian || point.b.lagrangian) && !strains(point.a) && !strains(point.b);
+      if (point.booked) point.mapped = phase.relative(point);
       if (point.method->remembers)
         point.pressed = remembers(state.contact_memory, memory_of(state, point), point.a.body, point.b.body);
       points.points.push_back(point);
@@ -465,13 +586,19 @@ void start_points(const Model& model, State& state, Workspace& workspace, std::v
   phase.solve();
   const auto reaches = [](const ContactPoint& point) { return point.method->start_reaches_particles; };
   for (ContactPoint& point : points.points) {
-    point.mapped = point.found;
+    if (!point.booked) point.mapped = point.found;
     point.adjusted = phase.relative(point);
+    // As at nodes: without a first phase of its own it is shown what that would have left.
+    if (point.booked && point.method->at_start && !reaches(point))
+      add(point.adjusted, times(-std::max(dot(point.adjusted, point.normal), 0.0), point.normal));
     if (use != StartUse::Strain && point.constraint.hold != Hold::Nothing && reaches(point))
       point.start_push = std::max(push_of(point), 0.0);
   }
   if (use == StartUse::Strain) {
-    for (const ContactPoints::Change& change : points.changes) points.seen[change.node] = 0;
+    for (const ContactPoints::Change& change : points.changes) {
+      points.seen[change.node] = 0;
+      if (on_reference_grid(workspace, change.node)) std::copy(change.before.begin(), change.before.end(), node_record(workspace, change.node).f);
+    }
     return;
   }
   // The part of each node's change that never reaches the particles, from the impulses of the methods that want it so.
@@ -485,7 +612,7 @@ void start_points(const Model& model, State& state, Workspace& workspace, std::v
         const PointNode& entry = points.stencils[e];
         if (!points.seen[entry.node]) continue;
         ContactPoints::Start& start = points.start[points.seen[entry.node] - 1];
-        const double factor = (side == &point.a ? -1 : 1) / workspace.nodes[entry.node].v[3];
+        const double factor = (side == &point.a ? -1 : 1) / node_record(workspace, entry.node).v[3];
         for (int c = 0; c < 3; ++c) start.kept[c] += factor * entry.weight[c] * impulse[c];
       }
   }
@@ -497,14 +624,28 @@ void start_points(const Model& model, State& state, Workspace& workspace, std::v
         const Vector3& kept = points.start[points.seen[entry.node] - 1].kept;
         for (int c = 0; c < 3; ++c) point.kept[c] += (side == &point.a ? 1 : -1) * entry.weight[c] * kept[c];
       }
+  const double grid_part = model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction();
+  std::size_t common = 0;
   for (std::size_t i = 0; i < points.changes.size(); ++i) {
     const ContactPoints::Change& change = points.changes[i];
-    const double* v = workspace.nodes[change.node].v;
-    for (int c = 0; c < 3; ++c) points.start[i].returned[c] = change.before[c] - v[c] - points.start[i].kept[c];
+    ContactPoints::Start& start = points.start[i];
+    NodeRecord& node = node_record(workspace, change.node);
     points.seen[change.node] = 0;
+    if (on_reference_grid(workspace, change.node)) {
+      // Its velocity at the beginning stays; the motion sees the change, and what particles never see is then taken back.
+      for (int c = 0; c < 3; ++c) {
+        node.f[c] += node.v[c] - change.before[c];
+        node.v[c] = change.before[c];
+      }
+      workspace.lagrangian_contact.keep(change.node - static_cast<std::int64_t>(workspace.nodes.size()),
+                                        times(-(1 - grid_part), start.kept));
+      continue;
+    }
+    for (int c = 0; c < 3; ++c) start.returned[c] = change.before[c] - node.v[c] - start.kept[c];
+    points.start[common++] = start;
   }
-  book(state, workspace, phase, false,
-       model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction(), dt);
+  points.start.resize(common);
+  book(state, workspace, phase, false, grid_part, dt);
 }
 
 void return_start_points(Workspace& workspace) {
@@ -513,12 +654,24 @@ void return_start_points(Workspace& workspace) {
 }
 
 void end_points(State& state, Workspace& workspace, double dt) {
+  workspace.lagrangian_contact.give_total(workspace);
   Phase phase(state, workspace, workspace.rigid, true, StartUse::MotionAndStrain, dt);
   phase.solve();
   book(state, workspace, phase, true, 0, dt);
   for (const ContactPoint& point : workspace.points.points)
     if (point.method->remembers && push_of(point) > 0)
       remember(state.contact_memory, memory_of(state, point), point.a.body, point.b.body);
+}
+
+void begin_held_points(Workspace& workspace) {
+  for (ContactPoint& point : workspace.points.points)
+    if (point.booked) point.kept = end_velocity(workspace, point);
+}
+
+void book_held_points(State& state, Workspace& workspace) {
+  for (const ContactPoint& point : workspace.points.points)
+    if (point.booked && point.constraint.hold != Hold::Nothing)
+      state.ledger.contact_dissipation -= 0.5 * dot(point.impulse, minus(end_velocity(workspace, point), point.kept));
 }
 
 }  // namespace ogive

@@ -1,5 +1,6 @@
 // The nodes of a field around a point with their weights, from the slots of the grid. Images beyond symmetry and fixed faces
-// are in the weights of the nodes that they mirror.
+// are in the weights of the nodes that they mirror. A total Lagrangian body is a field of its reference grid, and the points are
+// where they lay at rest.
 #pragma once
 
 #include <algorithm>
@@ -52,6 +53,36 @@ class Stenciler {
       stencil.push_back({nodes.weight[i], static_cast<std::int32_t>(nodes.record[i] - workspace_.nodes.data())});
   }
 
+  // Appends the stencil of a total Lagrangian body's surface at the place of rest X. `inside`: as deep as the outermost particles,
+  // where the nodes around carry the surface. Their weights w_j = N_j(inside) c_j (1 + (X_j - X_m) . C^-1 (X - X_m)) / sum N c, with
+  // c as above and X_m, C the mean and covariance of the nodes with the weights N c, give linear fields exactly at X: the surface
+  // turns and stretches with the body. Directions in which the nodes hardly spread are left out.
+  void make_linear(std::int32_t field, const Vector3& X, const Vector3& inside, std::vector<PointNode>& stencil) const {
+    Unfolded nodes;
+    unfold(field, inside, nodes);
+    if (nodes.count == 0) return;
+    double largest = 0, sum = 0;
+    for (int i = 0; i < nodes.count; ++i) largest = std::max(largest, nodes.mass[i]);
+    Vector3 mean{};
+    for (int i = 0; i < nodes.count; ++i) {
+      nodes.share[i] *= nodes.mass[i] / (nodes.mass[i] + light * largest);
+      sum += nodes.share[i];
+      add(mean, times(nodes.share[i], nodes.place[i]));
+    }
+    mean = times(1 / sum, mean);
+    Matrix3 spread{};
+    for (int i = 0; i < nodes.count; ++i) {
+      const Vector3 r = minus(nodes.place[i], mean);
+      for (int c = 0; c < 3; ++c) add(spread[c], times(nodes.share[i] / sum * r[c], r));
+    }
+    const Vector3 slope = solve_where_spread(spread, minus(in_cells(X), mean));
+    for (int i = 0; i < nodes.count; ++i) {
+      const Vector3 r = minus(nodes.place[i], mean);
+      const double weight = nodes.share[i] / sum * (1 + dot(r, slope));
+      stencil.push_back({times(weight, nodes.sign[i]), static_cast<std::int32_t>(nodes.record[i] - workspace_.nodes.data())});
+    }
+  }
+
   // Velocity at the end of the step (node records: {-, mass | velocity}) of a field's surface at x; false: no mass there.
   bool end_velocity_on_surface(std::int32_t field, const Vector3& x, Vector3& velocity) const {
     Nodes nodes;
@@ -65,6 +96,7 @@ class Stenciler {
 
  private:
   static constexpr double light = 0.1;
+  static constexpr double least_spread = 0.02;  // square cells
 
   // Those around a point that have mass, with the weights of the components, and without signs.
   struct Nodes {
@@ -144,6 +176,93 @@ class Stenciler {
           if (x.held[i] || y.held[j] || z.held[k]) weight = {};
           nodes.share[nodes.count] = x.whole[i] * y.whole[j] * z.whole[k];
           nodes.mass[nodes.count] = record->v[3] * x.images[i] * y.images[j] * z.images[k];
+          nodes.record[nodes.count++] = record;
+        }
+  }
+
+  // C^-1 r by elimination, the widest direction first; zero along those that are left out.
+  static Vector3 solve_where_spread(Matrix3 C, Vector3 r) {
+    int order[3] = {0, 1, 2}, rank = 0;
+    for (; rank < 3; ++rank) {
+      for (int k = rank + 1; k < 3; ++k)
+        if (C[order[k]][order[k]] > C[order[rank]][order[rank]]) std::swap(order[rank], order[k]);
+      const int p = order[rank];
+      if (!(C[p][p] > least_spread)) break;
+      for (int k = rank + 1; k < 3; ++k) {
+        const double factor = C[order[k]][p] / C[p][p];
+        add(C[order[k]], times(-factor, C[p]));
+        r[order[k]] -= factor * r[p];
+      }
+    }
+    Vector3 solution{};
+    for (int k = rank - 1; k >= 0; --k) {
+      const int p = order[k];
+      double rest = r[p];
+      for (int j = k + 1; j < rank; ++j) rest -= C[p][order[j]] * solution[order[j]];
+      solution[p] = rest / C[p][p];
+    }
+    return solution;
+  }
+
+  // The same with images beyond faces for themselves; sign: what of the image's components it has, 0 where a face holds them.
+  struct Unfolded {
+    int count = 0;
+    const NodeRecord* record[27];
+    Vector3 place[27], sign[27];  // place in cells from domain_min
+    double share[27], mass[27];
+  };
+
+  Vector3 in_cells(const Vector3& x) const {
+    Vector3 xi;
+    for (int a = 0; a < 3; ++a) xi[a] = (x[a] - model_.grid.domain_min[a]) / model_.grid.cell_size;
+    return xi;
+  }
+
+  void unfold(std::int32_t field, const Vector3& x, Unfolded& nodes) const {
+    const Grid& grid = model_.grid;
+    const ShapeFunction shape = model_.numerics.shape_function;
+    const int width = shape == ShapeFunction::Linear ? 2 : 3;
+    const Vector3 xi = in_cells(x);
+    double w[3][3];
+    int first[3], real[3][3];
+    bool on_face[3][3] = {}, beyond[3][3] = {}, fixed[3][3] = {};
+    for (int a = 0; a < 3; ++a) {
+      first[a] = stencil_weights(shape, xi[a], w[a]);
+      const int last = static_cast<int>(std::lround((grid.domain_max[a] - grid.domain_min[a]) / grid.cell_size));
+      for (int i = 0; i < width; ++i) {
+        real[a][i] = first[a] + i;
+        for (int side = 0; side < 2; ++side) {
+          const int plane = side == 0 ? 0 : last;
+          if (grid.face[2 * a + side] == Face::Free) continue;
+          on_face[a][i] = on_face[a][i] || real[a][i] == plane;
+          if (side == 0 ? real[a][i] < plane : real[a][i] > plane) {
+            real[a][i] = 2 * plane - real[a][i];
+            beyond[a][i] = true;
+          }
+          if (on_face[a][i] || beyond[a][i]) fixed[a][i] = grid.face[2 * a + side] == Face::Fixed;
+        }
+      }
+    }
+    for (int k = 0; k < width; ++k)
+      for (int j = 0; j < width; ++j)
+        for (int i = 0; i < width; ++i) {
+          const int at[3] = {i, j, k};
+          const double share = w[0][i] * w[1][j] * w[2][k];
+          if (share == 0) continue;
+          const NodeRecord* record = node_of(field, {real[0][i], real[1][j], real[2][k]});
+          if (!record || !(record->v[3] > 0)) continue;
+          Vector3 sign = {1, 1, 1};
+          double mass = record->v[3];
+          for (int a = 0; a < 3; ++a) {
+            const bool plane = on_face[a][at[a]];
+            if (plane) mass *= 2;
+            for (int c = 0; c < 3; ++c)
+              if (c == a || fixed[a][at[a]]) sign[c] *= plane ? 0 : beyond[a][at[a]] ? -1 : 1;
+          }
+          nodes.share[nodes.count] = share;
+          nodes.mass[nodes.count] = mass;
+          nodes.sign[nodes.count] = sign;
+          for (int a = 0; a < 3; ++a) nodes.place[nodes.count][a] = first[a] + at[a];
           nodes.record[nodes.count++] = record;
         }
   }

@@ -15,6 +15,8 @@ void LagrangianContact::find(const Model& model, const State& state, Workspace& 
     push[node] = {};
   }
   touched.clear();
+  for (const std::int64_t node : touched_by_points) kept[node] = {};
+  touched_by_points.clear();
   mirror_impulse = {};
   if (!workspace.reference_grid) return;
   const Workspace& reference = *workspace.reference_grid;
@@ -144,6 +146,19 @@ void LagrangianContact::apply(const Workspace& workspace, std::vector<Vector3>* 
   const double share = sum == &total ? 1 : sum == &kept ? -1 : 0;
   for (int c = 0; c < 3; ++c) mirror_impulse[c] += share * from_mirrors.c[c];
   gather();
+}
+
+void LagrangianContact::give_total(Workspace& workspace) {
+  for (const std::int64_t node : touched) {
+    NodeRecord& record = workspace.reference_grid->nodes[node];
+    for (int c = 0; c < 3; ++c) record.f[c] += total[node][c];
+    total[node] = {};
+  }
+}
+
+void LagrangianContact::keep(std::int64_t node, const Vector3& velocity) {
+  touched_by_points.push_back(node);
+  add(kept[node], velocity);
 }
 
 void LagrangianContact::see_trial(const Workspace& workspace) {

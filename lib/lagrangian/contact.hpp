@@ -66,15 +66,21 @@ class LagrangianContact {
   std::vector<Record> at_field;           // by index in `fields`
   std::vector<Vector3> total;             // velocity given to it in this step
   std::vector<Vector3> kept;              // part of it that moves the nodes and is then taken back
+  std::vector<std::int64_t> touched_by_points;  // nodes with `kept` of contact at points
   Vector3 mirror_impulse{};               // what mirrors gave to the impulses of `total` without `kept`
   // Of each node with contact records: index in `fields`, -1 none; components that change their sign.
   std::vector<std::int32_t> at, mirrored, held;
 
   bool empty() const { return fields.empty(); }
+  bool keeps() const { return !fields.empty() || !touched_by_points.empty(); }
   void find(const Model& model, const State& state, Workspace& workspace);
   // The change of the fields' velocities by `impulse` of all of them. The velocity that the reference grid gets is
   // added to `sum`, by node; null: it gets none.
   void apply(const Workspace& workspace, std::vector<Vector3>* sum);
+  // Adds `total` to the reference grid's trial velocities; it is zero then.
+  void give_total(Workspace& workspace);
+  // Adds to `kept` of a node of the reference grid.
+  void keep(std::int64_t node, const Vector3& velocity);
   // The change of the fields' velocities by the reference grid's own trial velocities.
   void see_trial(const Workspace& workspace);
   // The same by what happens to those velocities between the two.

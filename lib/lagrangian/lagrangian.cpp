@@ -10,6 +10,7 @@
 #include "boundary/boundary.hpp"
 #include "breakdown.hpp"
 #include "contact/contact.hpp"
+#include "contact/points.hpp"
 #include "error.hpp"
 #include "lagrangian/reference_grid.hpp"
 #include "loads/loads.hpp"
@@ -280,7 +281,7 @@ void set_affine_velocity(const Model& model, State& state, const Workspace& refe
 void take_back_kept(const Model& model, State& state, Workspace& workspace) {
   Workspace& reference = *workspace.reference_grid;
   const LagrangianContact& contact = workspace.lagrangian_contact;
-  if (contact.empty()) return;
+  if (!contact.keeps()) return;
   const auto kept_at = [&](std::int64_t image, std::int32_t signs, int c) {
     const double kept = contact.kept[image][c];
     return signs >> c & 1 ? -kept : kept;
@@ -420,17 +421,16 @@ void hold_lagrangian(const Model& model, State& state, Workspace& workspace, dou
   if (!workspace.reference_grid) return;
   Workspace& reference = *workspace.reference_grid;
   LagrangianContact& contact = workspace.lagrangian_contact;
-  for (const std::int64_t node : contact.touched) {
-    NodeRecord& record = reference.nodes[node];
-    for (int c = 0; c < 3; ++c) record.f[c] += contact.total[node][c];
-  }
+  contact.give_total(workspace);
   add(state.ledger.boundary_impulse, contact.mirror_impulse);
   hold_faces(state, reference);
   if (!reference.prescribed_points.empty()) {
     contact.begin_change(workspace);
+    begin_held_points(workspace);
     prescribe_points(state, reference, dt);
     contact.end_change(workspace);
     book_held_contact(state, workspace);
+    book_held_points(state, workspace);
   }
   book_gravity(model, state, reference, kick_time(state, dt));
 }

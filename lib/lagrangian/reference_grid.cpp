@@ -117,6 +117,10 @@ void find_prescribed_points(const Model& model, const State& state, Workspace& r
 void link_reference_grid(const Model& model, State& state, Workspace& workspace, bool fresh) {
   const auto lagrangian = [](const BodyState& body) { return body.lagrangian; };
   workspace.lagrangian_contact = {};
+  for (PlacedSurface& placed : workspace.surfaces) {
+    placed.vertex_ends.clear();
+    placed.vertex_nodes.clear();
+  }
   if (std::none_of(state.bodies.begin(), state.bodies.end(), lagrangian)) {
     workspace.reference_grid.reset();
     return;

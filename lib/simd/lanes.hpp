@@ -121,15 +121,28 @@ OGIVE_PAIR_OPERATOR(*)
 OGIVE_PAIR_OPERATOR(/)
 OGIVE_PAIR_OPERATOR(&)
 OGIVE_PAIR_OPERATOR(|)
-OGIVE_PAIR_OPERATOR(<)
-OGIVE_PAIR_OPERATOR(>)
-OGIVE_PAIR_OPERATOR(<=)
-OGIVE_PAIR_OPERATOR(>=)
-OGIVE_PAIR_OPERATOR(==)
-OGIVE_PAIR_OPERATOR(!=)
 OGIVE_PAIR_OPERATOR(<<)
 OGIVE_PAIR_OPERATOR(>>)
 #undef OGIVE_PAIR_OPERATOR
+
+// Compilers differ in the type of a comparison's integers: the cast makes it ours.
+#define OGIVE_PAIR_COMPARISON(op)                                                                          \
+  template <class T>                                                                                       \
+  OGIVE_INLINE IntVecOf<Pair<T>> operator op(const Pair<T>& x, const Pair<T>& y) {                         \
+    return {(IntVecOf<T>)(x.a op y.a), (IntVecOf<T>)(x.b op y.b)};                                         \
+  }                                                                                                        \
+  template <class T, class S>                                                                              \
+    requires(!is_pair<S>)                                                                                  \
+  OGIVE_INLINE IntVecOf<Pair<T>> operator op(const Pair<T>& x, S y) {                                      \
+    return {(IntVecOf<T>)(x.a op y), (IntVecOf<T>)(x.b op y)};                                             \
+  }
+OGIVE_PAIR_COMPARISON(<)
+OGIVE_PAIR_COMPARISON(>)
+OGIVE_PAIR_COMPARISON(<=)
+OGIVE_PAIR_COMPARISON(>=)
+OGIVE_PAIR_COMPARISON(==)
+OGIVE_PAIR_COMPARISON(!=)
+#undef OGIVE_PAIR_COMPARISON
 
 template <class T>
 OGIVE_INLINE Pair<T> operator-(const Pair<T>& x) {

@@ -29,11 +29,11 @@ static bool is_used(const Model& model, int body) {
   const Body& rules = model.bodies[body];
   if (!rules.has_surface()) return false;
   for (const Wall& wall : model.walls)
-    if (rules.rigid() && by_surface(wall.rule)) return true;
+    if ((rules.rigid() || rules.total_lagrangian()) && by_surface(wall.rule)) return true;
   for (int other = 0; other < static_cast<int>(model.bodies.size()); ++other) {
     if (other == body || !by_surface(model.rule_of(body, other))) continue;
     const bool both_rigid = rules.rigid() && model.bodies[other].rigid() && model.bodies[other].has_surface();
-    if (both_rigid || surface_owner(model, body, other) == body) return true;
+    if (both_rigid || rules.total_lagrangian() || surface_owner(model, body, other) == body) return true;
   }
   return false;
 }
@@ -46,6 +46,7 @@ int surface_owner(const Model& model, int a, int b) {
   const Body &first = model.bodies[a], &second = model.bodies[b];
   if (!first.has_surface() || !second.has_surface()) return first.has_surface() ? a : second.has_surface() ? b : -1;
   if (first.rigid() != second.rigid()) return first.rigid() ? a : b;
+  if (first.total_lagrangian() != second.total_lagrangian()) return first.total_lagrangian() ? a : b;
   const ContactRule& rule = model.rule_of(a, b);
   if (rule.master == a || rule.master == b) return rule.master;
   return std::min(a, b);
@@ -68,11 +69,109 @@ void prepare_surfaces(const Model& model, Workspace& workspace) {
   }
 }
 
+// Vertices beyond a mirror as their images.
+static bool into_model(const Model& model, Vector3& x, Vector3& sign) {
+  bool changed = false;
+  sign = {1, 1, 1};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const double plane = side == 0 ? model.grid.domain_min[axis] : model.grid.domain_max[axis];
+      const bool beyond = side == 0 ? x[axis] < plane : x[axis] > plane;
+      if (!beyond || model.grid.face[2 * axis + side] != Face::Symmetry) continue;
+      x[axis] = 2 * plane - x[axis];
+      sign[axis] = -1;
+      changed = true;
+    }
+  return changed;
+}
+
+// Of a total Lagrangian body as it lay at rest.
+class NearestParticle {
+ public:
+  NearestParticle(const Model& model, const BodyState& body) : model_(model), body_(body) {
+    for (const Group& group : body.groups)
+      for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) cells_.emplace_back(cell_of(place(p)), p);
+    std::sort(cells_.begin(), cells_.end());
+  }
+  // Within a cell or so of x; -1: there is none.
+  std::int64_t to(const Vector3& x) const {
+    const Cell at = cell_of(x);
+    std::int64_t found = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = -1; k <= 1; ++k)
+      for (int j = -1; j <= 1; ++j) {
+        const Cell first = {at[0] + k, at[1] + j, at[2] - 1}, last = {at[0] + k, at[1] + j, at[2] + 1};
+        for (auto i = std::lower_bound(cells_.begin(), cells_.end(), std::pair(first, std::int64_t{-1}));
+             i != cells_.end() && i->first <= last; ++i) {
+          const Vector3 r = minus(x, place(i->second));
+          if (dot(r, r) < least) least = dot(r, r), found = i->second;
+        }
+      }
+    return found;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;  // z, y, x
+  Vector3 place(std::int64_t p) const {
+    const double* X = &body_.reference.position[4 * p];
+    return {X[0], X[1], X[2]};
+  }
+  Cell cell_of(const Vector3& x) const {
+    Cell cell;
+    for (int c = 0; c < 3; ++c)
+      cell[2 - c] = static_cast<std::int64_t>(std::floor((x[c] - model_.grid.domain_min[c]) / model_.grid.cell_size));
+    return cell;
+  }
+
+  const Model& model_;
+  const BodyState& body_;
+  std::vector<std::pair<Cell, std::int64_t>> cells_;
+};
+
+// The stencils that move the vertices of a total Lagrangian body, from where they lay at rest.
+static void link_vertices(const Model& model, const BodyState& body, int index, const Workspace& reference, PlacedSurface& placed) {
+  double mass = 0;
+  for (const Group& group : body.groups)
+    for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) mass += body.reference.position[4 * p + 3];
+  const double depth = 0.5 * std::cbrt(mass / (model.material_of(index).density * static_cast<double>(body.particles)));
+  const std::vector<double>& vertices = model.bodies[index].surface.vertices;
+  const Surface& surface = placed.surface;
+  const Surface at_rest = [&] {
+    Surface copy = surface;
+    copy.move(vertices);
+    return copy;
+  }();
+  const Stenciler stenciler(model, reference);
+  const NearestParticle nearest(model, body);
+  placed.vertex_particle.clear();
+  placed.vertex_inward.assign(vertices.size() / 3, Vector3{});
+  placed.vertex_nodes.clear();
+  placed.vertex_ends.clear();
+  for (std::int64_t v = 0; v < static_cast<std::int64_t>(vertices.size() / 3); ++v) {
+    if (surface.has_vertex(v)) {
+      Vector3 X = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]}, sign;
+      placed.vertex_inward[v] = times(-depth, at_rest.normal_at_vertex(v));
+      Vector3 inside = plus(X, placed.vertex_inward[v]);
+      into_model(model, X, sign);
+      Vector3 unused;
+      into_model(model, inside, unused);
+      const std::size_t first = placed.vertex_nodes.size();
+      stenciler.make_linear(index, X, inside, placed.vertex_nodes);
+      for (std::size_t e = first; e < placed.vertex_nodes.size(); ++e)
+        for (int c = 0; c < 3; ++c) placed.vertex_nodes[e].weight[c] *= sign[c];
+    }
+    placed.vertex_ends.push_back(static_cast<std::int64_t>(placed.vertex_nodes.size()));
+    placed.vertex_particle.push_back(nearest.to({vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]}));
+  }
+}
+
 void place_surfaces(const Model& model, const State& state, Workspace& workspace) {
   for (std::size_t b = 0; b < workspace.surfaces.size(); ++b) {
     PlacedSurface& placed = workspace.surfaces[b];
     if (!placed.used) continue;
     if (!model.bodies[b].rigid()) placed.surface.move(state.bodies[b].surface_vertices);
+    if (state.bodies[b].lagrangian && placed.vertex_ends.empty())
+      link_vertices(model, state.bodies[b], static_cast<int>(b), *workspace.reference_grid, placed);
     const RigidState& rigid = state.bodies[b].rigid;
     placed.moved = model.bodies[b].rigid();
     placed.turn = rigid.turn;
@@ -96,6 +195,8 @@ void place_surfaces(const Model& model, const State& state, Workspace& workspace
 void move_surfaces(const Model& model, State& state, const Workspace& workspace, double dt) {
   for (std::size_t b = 0; b < workspace.surfaces.size(); ++b) {
     if (!workspace.surfaces[b].used || model.bodies[b].rigid()) continue;
+    const PlacedSurface& placed = workspace.surfaces[b];
+    const bool lagrangian = state.bodies[b].lagrangian;
     std::vector<double>& vertices = state.bodies[b].surface_vertices;
     const std::int64_t count = static_cast<std::int64_t>(vertices.size() / 3);
     std::vector<Vector3> velocity(count);
@@ -105,17 +206,18 @@ void move_surfaces(const Model& model, State& state, const Workspace& workspace,
       const Stenciler stenciler(model, workspace);
 #pragma omp for schedule(static)
       for (std::int64_t v = 0; v < count; ++v) {
-        if (!workspace.surfaces[b].surface.has_vertex(v)) continue;
-        // What lies beyond a mirror moves as its image does.
-        Vector3 x = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]}, sign = {1, 1, 1};
-        for (int axis = 0; axis < 3; ++axis)
-          for (int side = 0; side < 2; ++side) {
-            const double plane = side == 0 ? model.grid.domain_min[axis] : model.grid.domain_max[axis];
-            const bool beyond = side == 0 ? x[axis] < plane : x[axis] > plane;
-            if (!beyond || model.grid.face[2 * axis + side] != Face::Symmetry) continue;
-            x[axis] = 2 * plane - x[axis];
-            sign[axis] = -1;
-          }
+        if (!placed.surface.has_vertex(v)) continue;
+        if (lagrangian) {
+          const Workspace& reference = *workspace.reference_grid;
+          const std::int64_t begin = v == 0 ? 0 : placed.vertex_ends[v - 1];
+          found[v] = placed.vertex_ends[v] > begin;
+          for (std::int64_t e = begin; e < placed.vertex_ends[v]; ++e)
+            for (int c = 0; c < 3; ++c)
+              velocity[v][c] += placed.vertex_nodes[e].weight[c] * reference.nodes[placed.vertex_nodes[e].node].f[c];
+          continue;
+        }
+        Vector3 x = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]}, sign;
+        into_model(model, x, sign);
         found[v] = stenciler.end_velocity_on_surface(model.field_of(static_cast<int>(b)), x, velocity[v]);
         for (int c = 0; c < 3; ++c) velocity[v][c] *= sign[c];
       }
@@ -129,7 +231,7 @@ void move_surfaces(const Model& model, State& state, const Workspace& workspace,
       }
     if (moving > 0) mean = times(1 / moving, mean);
     for (std::int64_t v = 0; v < count; ++v)
-      for (int c = 0; c < 3 && workspace.surfaces[b].surface.has_vertex(v); ++c)
+      for (int c = 0; c < 3 && placed.surface.has_vertex(v); ++c)
         vertices[3 * v + c] += dt * (found[v] ? velocity[v][c] : mean[c]);
   }
 }

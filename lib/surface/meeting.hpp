@@ -1,8 +1,8 @@
 // Surfaces of bodies in a step: whose is used for a pair, where it is, and where two of them are nearest to each other.
 // docs/theory.md, section 6.5.
 //
-// Rigid bodies carry theirs with their motion. A deformable one carries vertices in BodyState::surface_vertices; whoever
-// computes its velocity moves them (move_surfaces does where the velocity is the grid's).
+// Rigid bodies carry theirs with their motion. A deformable one carries vertices in BodyState::surface_vertices, which move with
+// the common grid or, of a total Lagrangian body, with the nodes of its reference grid.
 #pragma once
 
 #include "grid.hpp"
@@ -12,7 +12,7 @@
 
 namespace ogive {
 
-// The owner of the pair's surface: a body, -1: none. Rigid before deformable, the rule's master, the first.
+// The owner of the pair's surface: a body, -1: none. Rigid before total Lagrangian before updated, the rule's master, the first.
 int surface_owner(const Model& model, int a, int b);
 
 // Whether a rule finds contact by surfaces.
@@ -23,7 +23,8 @@ void prepare_surfaces(const Model& model, Workspace& workspace);
 // At the beginning of a step: where they are.
 void place_surfaces(const Model& model, const State& state, Workspace& workspace);
 
-// Once the velocities at the end of the step stand in {velocity, mass | end velocity}: moves the vertices of deformable bodies.
+// Once the velocities at the end of the step stand in {velocity, mass | end velocity} of the common and the reference grid: moves
+// the vertices of deformable bodies.
 // One that finds no material of its body goes with the mean of the others.
 void move_surfaces(const Model& model, State& state, const Workspace& workspace, double dt);
 

@@ -401,6 +401,7 @@ bool Surface::nearest_triangle(const Vector3& x, double reach, SurfacePoint& fou
   }
   if (best.triangle < 0) return false;
   if (hint) *hint = best.triangle;
+  found.triangle = best.triangle;
   const Vector3 outward = pseudonormal(best.triangle, best.feature), from = minus(x, best.point);
   const double sign = dot(from, outward) < 0 ? -1 : 1, size = std::sqrt(best.squared);
   found.distance = sign * size;
@@ -427,6 +428,20 @@ bool Surface::nearest(const Vector3& x, double reach, SurfacePoint& found, std::
   found.normal = plus(plus(times(p.normal[0], shape_.axes[0]), times(p.normal[1], shape_.axes[1])),
                       times(p.normal[2], shape_.axes[2]));
   return true;
+}
+
+Surface::Corners Surface::corners_at(std::int32_t triangle, const Vector3& x) const {
+  const std::int32_t* corner = &corners_[3 * triangle];
+  const Vector3 a = vertex(corner[0]), ab = minus(vertex(corner[1]), a), ac = minus(vertex(corner[2]), a), ax = minus(x, a);
+  const Vector3 area = cross(ab, ac);
+  const double inverse = 1 / std::max(dot(area, area), std::numeric_limits<double>::min());
+  const double s = dot(cross(ax, ac), area) * inverse, t = dot(cross(ab, ax), area) * inverse;
+  return {{corner[0], corner[1], corner[2]}, {1 - s - t, s, t}};
+}
+
+Vector3 Surface::normal_at_vertex(std::int64_t v) const {
+  const std::int32_t at = around_[first_around_[v]];
+  return pseudonormal(at / 3, 4 + at % 3);
 }
 
 void Surface::move(const std::vector<double>& vertices) {

@@ -32,6 +32,7 @@ struct SurfaceDef {
 struct SurfacePoint {
   double distance = 0;  // signed
   Vector3 normal{};     // unit; the nearest point is x - distance * normal
+  std::int32_t triangle = -1;  // it lies in; of Surface's own numbering
 };
 
 class Surface {
@@ -49,6 +50,14 @@ class Surface {
 
   // Triangles alone: the vertices have moved. Three coordinates each, as many as there were.
   void move(const std::vector<double>& vertices);
+  // The vertices of a triangle with their shares in a point of it.
+  struct Corners {
+    std::array<std::int32_t, 3> vertex;
+    std::array<double, 3> share;
+  };
+  Corners corners_at(std::int32_t triangle, const Vector3& x) const;
+  // Unit, outward; from the angle-weighted mean of the triangles around.
+  Vector3 normal_at_vertex(std::int64_t v) const;
   // Whether a triangle that is not left out has the vertex.
   bool has_vertex(std::int64_t v) const { return first_around_[v] < first_around_[v + 1]; }
 

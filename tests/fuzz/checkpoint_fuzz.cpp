@@ -78,6 +78,7 @@ void use(ogive_world* world) {
   Store store;
   const ogive_writer writer = store.writer();
   require(ogive_world_save(world, &writer) == OGIVE_OK, "a loaded world cannot be saved");
+  ++fuzz::accepted;
 }
 
 void load_file(std::string bytes) {

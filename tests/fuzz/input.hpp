@@ -52,6 +52,9 @@ class Input {
   const std::uint8_t* end_;
 };
 
+/// Inputs that were taken to the end of what is tried. A target that refuses all of its corpus tries nothing: the replay fails.
+inline std::uint64_t accepted = 0;
+
 /// For what must not happen: the fuzzer takes the abort for a finding.
 inline void require(bool holds, const char* what) {
   if (holds) return;

@@ -30,6 +30,9 @@ class Caller {
 
   void run() {
     for (int i = 0; i < 60 && !input_.ended(); ++i) call();
+    ogive_progress progress{};
+    progress.struct_size = sizeof progress;
+    if (ogive_world_progress(world(), &progress) == OGIVE_OK && progress.steps > 0) ++accepted;
   }
 
  private:

@@ -13,7 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fuzz::MemoryFile file(data, size);
   ogive_mesh* mesh = nullptr;
   if (ogive_mesh_create(&mesh) != OGIVE_OK) return 0;
-  const ogive_status read = ogive_mesh_read(mesh, file.path().c_str(), nullptr);
+  ogive_mesh_read_def how;
+  ogive_mesh_read_def_init(&how, sizeof how);
+  const ogive_status read = ogive_mesh_read(mesh, file.path().c_str(), &how);
   require(read != OGIVE_ERROR_INTERNAL, "reading a mesh ended with an internal error");
   if (read == OGIVE_OK) {
     const ogive_status checked = ogive_mesh_check(mesh);
@@ -39,6 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(std::abs(sum - info.volume) <= 1e-9 * info.volume, "the particles do not have the mesh's volume");
         for (std::size_t i = 0; i < xyz.size(); ++i)
           require(xyz[i] >= info.lower[i % 3] && xyz[i] <= info.upper[i % 3], "a particle lies outside the mesh's box");
+        ++fuzz::accepted;
       }
     }
   }

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "input.hpp"
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
@@ -84,6 +86,11 @@ int main(int count, char** arguments) {
               static_cast<unsigned long long>(seed));
   std::fflush(stdout);
   for (const Bytes& input : inputs) LLVMFuzzerTestOneInput(input.data(), input.size());
+  std::printf("%llu of the corpus taken to the end\n", static_cast<unsigned long long>(fuzz::accepted));
+  if (fuzz::accepted == 0) {
+    std::fprintf(stderr, "fuzz: every input of the corpus was refused: nothing is tried\n");
+    return 1;
+  }
   std::mt19937_64 random(seed);
   for (std::uint64_t i = 0; i < changes; ++i) {
     const Bytes input = changed(inputs[random() % inputs.size()], inputs[random() % inputs.size()], random);

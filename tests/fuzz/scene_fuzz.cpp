@@ -21,6 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const driver::Scene same = driver::read_scene(again, "scene.toml");
     fuzz::require(same.text == scene.text && same.bodies.size() == scene.bodies.size() && same.stop.time == scene.stop.time,
                   "the kept text is another scene");
+    ++fuzz::accepted;
   } catch (const driver::Failure& failure) {
     fuzz::require(failure.what()[0] != '\0', "a refusal without a message");
   }

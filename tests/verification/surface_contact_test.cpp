@@ -336,12 +336,16 @@ TEST(SurfaceContact, MovesToTheSameBitsWithAnyNumberOfThreadsAndOverARestart) {
 TEST(SurfaceContact, IsRefusedWhereNoBodyOfAPairHasASurface) {
   Scene scene;
   scene.grid(1, {-6, -6, -6}, {6, 6, 6}).contact(OGIVE_CONTACT_HUANG_SECOND, by_surface);
-  const ogive_material_id metal = scene.material("metal", steel());
-  scene.box("upper", metal, {-2, -2, 1}, {2, 2, 3}, 0.5, {0, 0, -20});
-  scene.box("lower", metal, {-2, -2, -3}, {2, 2, -1}, 0.5, {0, 0, 0});
+  const ogive_body_def def = Scene::body(scene.material("metal", steel()), {0, 0, 0});
+  const double volume = 0.1;
+  for (const char* name : {"upper", "lower"}) {
+    const double place[] = {0, 0, name[0] == 'u' ? 2.0 : -2.0};
+    ogive_body_id id{};
+    scene.check(ogive_body_add_particles(scene.get(), name, &def, 1, place, &volume, &id));
+  }
   try {
     scene.prepare();
-    FAIL() << "a deformable box has no surface that it could carry";
+    FAIL() << "bodies given by particles alone have no surface";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("\"upper\" or \"lower\""), std::string::npos) << error.what();
   }

@@ -555,12 +555,6 @@ TEST(TotalLagrangian, WhatItCannotBeJoinedWithIsRefusedBeforeTheFirstStep) {
   const std::string rod = "body \"rod\": a total Lagrangian body needs ";
   EXPECT_EQ(refusal([](Scene& scene) { scene.numerics(OGIVE_SHAPE_GIMP, 0.5); }),
             rod + "shape_function \"linear\" or \"quadratic_bspline\", got \"gimp\"");
-  ogive_contact_def contact;
-  ogive_contact_def_init(&contact, sizeof contact);
-  contact.detection = OGIVE_DETECTION_SURFACE;
-  EXPECT_EQ(refusal([&](Scene& scene) { scene.check(ogive_world_set_contact(scene.get(), &contact)); }),
-            rod + "contact detection \"gap\" or \"shared_node\" with \"plate\", got \"surface\"");
-
   Scene flat;
   flat.grid(1, {0, 0, 0}, {12, 12, 0}, {}, OGIVE_SPACE_PLANE_STRAIN);
   flat.add("rod", lagrangian(flat.material("steel", steel()), {}),
