@@ -23,6 +23,9 @@
 namespace driver {
 namespace {
 
+// Part of the energy from which on the end of a run says that its ledger does not close.
+constexpr double kOpenLedger = 0.02;
+
 volatile sig_atomic_t signal_received = 0;
 
 void remember_signal(int number) { signal_received = number; }
@@ -179,6 +182,10 @@ class Simulation {
     const ogive_ledger ledger = ledger_of(world_.get());
     std::vector<std::string> warnings;
     if (ledger.energy_warning_time >= 0) warnings.push_back(energy_warning(ledger));
+    if (const double part = unaccounted(ledger); ledger.energy_warning_time < 0 && std::abs(part) > kOpenLedger)
+      warnings.push_back("the energy ledger does not close: " + brief(100 * part) + " % of the energy is not accounted for; finer "
+                         "cells, another method or detection of contact (total Lagrangian bodies: \"surface\") or a smaller "
+                         "time_step_factor may keep it");
     output_.write_summary(world_.get(), {reason, threads_in_use(scene_.numerics), wall, warnings, start_cpu_seconds_,
                                          output_cpu_seconds_, cpu_after - start_cpu_seconds_ - output_cpu_seconds_});
 
@@ -193,6 +200,13 @@ class Simulation {
     std::fflush(stdout);
     for (const std::string& warning : warnings) std::fprintf(stderr, "WARNING: %s\n", warning.c_str());
     return kExitOk;
+  }
+
+  /// Part of the energy that there was, that came in, or that there is as motion.
+  static double unaccounted(const ogive_ledger& ledger) {
+    const double there = std::max({std::abs(ledger.initial_total), std::abs(ledger.external_work), std::abs(ledger.prescribed_work),
+                                   ledger.kinetic});
+    return there > 0 ? ledger.residual / there : 0;
   }
 
   std::string energy_warning(const ogive_ledger& ledger) const {

@@ -17,6 +17,7 @@ namespace ogive::geometry {
 namespace {
 
 constexpr double kNoVolume = 1e-14;  // of the sum of magnitudes: below, a shell's volume is rounding
+constexpr double kLeastVolume = 1e-290;  // below, parts of it have no longer all digits of a number
 
 Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vec3 cross(const Vec3& a, const Vec3& b) {
@@ -383,7 +384,7 @@ class Checker {
         }
       }
       shell.volume = volume.value();
-      if (!(std::abs(shell.volume) > kNoVolume * magnitude)) {
+      if (!(std::abs(shell.volume) > std::max(kNoVolume * magnitude, kLeastVolume))) {
         refuse("the shell of " + at(shell.facets[0]) + " encloses no volume");
       }
     }

@@ -597,6 +597,9 @@ void Model::exchange(Archive& a) {
       if (body.material < 0 || body.material >= static_cast<std::int32_t>(materials.size()))
         throw Error(ErrorKind::Format, "model/bodies: material " + std::to_string(body.material) + " is unknown");
       require_choice("formulation", body.formulation, 4);
+      for (int axis = 0; axis < 3; ++axis)
+        if (body.cut[axis] != 0 && body.cut[axis] != 1)
+          throw Error(ErrorKind::Format, "model/bodies: cut must be 0 or 1, found " + std::to_string(body.cut[axis]));
       if (body.total_lagrangian()) validate_distortion(body);
       validate_motion(body.motion);
       if (body.prescribed() && body.motion.empty())

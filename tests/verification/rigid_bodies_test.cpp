@@ -350,3 +350,23 @@ TEST(RigidBody, MovesToTheSameBitsWithAnyNumberOfThreadsAndOverARestart) {
     expect_same_bits(one, second);
   }
 }
+
+TEST(RigidBodies, OfASaveThatIsCutByNoFaceAreRefused) {
+  Scene scene;
+  scene.grid(1, {-6, -6, -6}, {6, 6, 6});
+  scene.add("ball", Scene::rigid(scene.material("steel", steel()), OGIVE_FORMULATION_RIGID_FREE, {0, 0, 0}),
+            Scene::solid(OGIVE_SOLID_SPHERE, {0, 0, 0}, {2, 0, 0}, 0.5));
+  scene.box("block", ogive_material_id{0}, {3, -1, -1}, {5, 1, 1}, 0.5, {0, 0, 0});
+  scene.prepare();
+  Store store;
+  store.save(scene);
+  const std::int32_t cut = -127;
+  std::memcpy(store.arrays.at("model/bodies/0/cut").bytes.data(), &cut, sizeof cut);
+  Scene other;
+  try {
+    store.load(other);
+    FAIL() << "a body of 2^-127 images";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("cut must be 0 or 1, found -127"), std::string::npos) << error.what();
+  }
+}
