@@ -17,6 +17,8 @@ tools/validate_thick_plate.py
 tools/validate_convergence.py --cells 4 3 2 1.5 1
 tools/validate_convergence.py --contact
 tools/validate_steel_ball.py
+tools/beam_table.py --only plane
+tools/beam_table.py --only 3d --cells 50 25
 tools/resolution_table.py
 tools/resolution_table.py --factors
 cmake --build --preset release  # the program carries what was just measured

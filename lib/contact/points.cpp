@@ -137,8 +137,8 @@ class Feeler {
       const double half = 0.5 * std::cbrt(volume);
       SurfacePoint found;
       if (!nearest_of_owner(model_, workspace_, owner, x, half + deepest * h, found, &hint)) continue;
-      offer(link.body, owner, x, found, found.distance - half, on_face, state_.bodies[link.body].lagrangian ? body.number[p] : p, -1,
-            points);
+      const std::int64_t particle = state_.bodies[link.body].lagrangian ? body.number[p] : p;
+      offer(link.body, owner, x, found, found.distance - half, on_face, particle, -1, points);
     }
   }
 
@@ -597,7 +597,8 @@ void start_points(const Model& model, State& state, Workspace& workspace, std::v
   if (use == StartUse::Strain) {
     for (const ContactPoints::Change& change : points.changes) {
       points.seen[change.node] = 0;
-      if (on_reference_grid(workspace, change.node)) std::copy(change.before.begin(), change.before.end(), node_record(workspace, change.node).f);
+      if (on_reference_grid(workspace, change.node))
+        std::copy(change.before.begin(), change.before.end(), node_record(workspace, change.node).f);
     }
     return;
   }
