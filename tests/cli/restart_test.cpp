@@ -279,4 +279,9 @@ TEST(KeptCheckpoint, of_save_version_4_goes_on_to_what_that_version_came_to) {
               {{"ball", 65.97570801545385}, {"bar", 84.0455546703123}, {"block", 92.89113141655855}, {"cap", 105.30986403655177}});
 }
 
+TEST(KeptCheckpoint, of_save_version_5_goes_on_to_what_that_version_came_to) {
+  // At step 100: a total Lagrangian ball that strikes a block and has a wall below, all by its own surface, before a mirror.
+  expect_kept("checkpoint_save5.h5", 0.04, {{"ball", 40.04442163601388}, {"block", 3.0071535181329505}});
+}
+
 }  // namespace
