@@ -7,8 +7,8 @@ clear error.
 Scene number N of seed S is always the same: `--first N --count 1 --keep` makes it again and leaves it in DIR. The classes:
 
   closed      ended; the energy ledger is closed to 2 % of what there was at first or came in
-  open        ended, but more energy is unaccounted for, and a warning said so: settings that are not stable, such as large
-              time-step factors, trilinear functions with FLIP, USL; or contact that is few cells wide
+  open        ended, but more energy is unaccounted for, and a warning said so: what clamps took (part of no sum), contact that is few
+              cells wide; settings that are not stable, such as large time-step factors, trilinear functions with FLIP, USL
   broken      broke down (exit code 3) with particle, place, time and cause
   refused     the scene was refused (exit code 2) with one line that names key, value and expectation
   FAILED      anything else: another exit code, a signal, no end within a minute, a number that is not finite, mass or momentum

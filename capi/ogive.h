@@ -445,11 +445,12 @@ OGIVE_API ogive_status ogive_solid_particles(ogive_world* world, const ogive_sol
  * counter-clockwise from outside. It must be closed and oriented, each edge shared by two triangles; what ogive_mesh_check
  * accepts is (ogive_mesh_surface gives it). A body that symmetry faces cut is given whole, as its particles are. A rigid body
  * carries it with its motion, a deformable one moves the vertices with its own velocities. A body of ogive_body_add_solid has its
- * surface without this call: exact where it is rigid, else triangles of half a cell where a rule asks for them. Before ogive_world_prepare; another call replaces it. */
+ * surface without this call: exact where it is rigid, else triangles of half a cell where a rule asks for them. Before
+ * ogive_world_prepare; another call replaces it. */
 OGIVE_API ogive_status ogive_body_set_surface(ogive_world* world, ogive_body_id body, int64_t vertex_count, const double* xyz,
                                               int64_t triangle_count, const int32_t* corners);
-/* The same from a built-in solid, exact with sharp tip and edges, for a rigid body given by its particles; lattice and spacing
- * are not looked at. */
+/* The same from a built-in solid for a body given by its particles: exact with sharp tip and edges where it is rigid, else
+ * triangles of half a cell; lattice and spacing are not looked at. */
 OGIVE_API ogive_status ogive_body_set_surface_solid(ogive_world* world, ogive_body_id body, const ogive_solid_def* solid);
 
 /* ----------------------------------------------------------------------------------------------------------- contact */

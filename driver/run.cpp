@@ -183,9 +183,9 @@ class Simulation {
     std::vector<std::string> warnings;
     if (ledger.energy_warning_time >= 0) warnings.push_back(energy_warning(ledger));
     if (const double part = unaccounted(ledger); ledger.energy_warning_time < 0 && std::abs(part) > kOpenLedger)
-      warnings.push_back("the energy ledger does not close: " + brief(100 * part) + " % of the energy is not accounted for; finer "
-                         "cells, another method or detection of contact (total Lagrangian bodies: \"surface\") or a smaller "
-                         "time_step_factor may keep it");
+      warnings.push_back("the energy ledger does not close: " + brief(100 * part) + " % of the energy is not accounted for; clamps "
+                         "take energy that no sum contains (boundary_work); finer cells, another method or detection of contact or a "
+                         "smaller time_step_factor may keep the rest");
     output_.write_summary(world_.get(), {reason, threads_in_use(scene_.numerics), wall, warnings, start_cpu_seconds_,
                                          output_cpu_seconds_, cpu_after - start_cpu_seconds_ - output_cpu_seconds_});
 

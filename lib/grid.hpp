@@ -47,7 +47,8 @@ struct PlacedSurface {
   bool moved = false;             // turn and shift are not the identity
   Matrix3 turn{};                 // rows
   Vector3 shift{}, lower{}, upper{};  // bounds: in the world
-  // Of a total Lagrangian body, for each vertex: the way to half a particle below it, the particle next to it (-1: none), and
+  // Of a total Lagrangian body, for each vertex: the way to half a particle below it, the particle next to it (where a
+  // method asks for stress; -1: none), and
   // the nodes of the reference grid that move it. Found when asked for; empty after that grid was linked anew.
   std::vector<Vector3> vertex_inward;
   std::vector<std::int64_t> vertex_particle;

@@ -9,7 +9,6 @@ as the mean of 0.5 ms. Writes docs/data/beam.csv and the table between the marke
 rows are read from docs/data/beam_reference.csv. Runs in DIR that are finished are not run again.
 """
 
-import argparse
 import csv
 import os
 import tempfile
@@ -17,7 +16,8 @@ import tempfile
 import numpy as np
 
 from plot_common import run_main
-from validation_table import NO_FILES, markdown_table, read_rows, read_table, replace_block, run_scene, write_table
+from validation_table import (NO_FILES, markdown_table, read_rows, read_table, replace_block,
+                              run_scene, table_arguments, write_table)
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "beam.csv")
@@ -68,12 +68,9 @@ def table(rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=os.path.join(ROOT, "build", "release", "bin", "ogive"))
-    parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
+    parser = table_arguments(__doc__, os.path.join(ROOT, "build", "release", "bin", "ogive"))
     parser.add_argument("--only", choices=["plane", "3d"])
     parser.add_argument("--cells", type=float, nargs="+", default=[50, 25, 12.5])
-    parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
     arguments = parser.parse_args()
     rows = read_table(DATA)
     if not arguments.table_only:

@@ -8,13 +8,12 @@ thread, and writes docs/data/coarse.csv and the table between the markers of doc
 finished are not run again.
 """
 
-import argparse
 import os
 import re
 import tempfile
 
 from plot_common import run_main
-from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, write_table
+from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, table_arguments, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "coarse.csv")
@@ -56,10 +55,7 @@ def table(rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=os.path.join(ROOT, "build", "release", "bin", "ogive"))
-    parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
-    parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
+    parser = table_arguments(__doc__, os.path.join(ROOT, "build", "release", "bin", "ogive"))
     arguments = parser.parse_args()
     if not arguments.table_only:
         with tempfile.TemporaryDirectory() as temporary:

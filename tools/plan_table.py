@@ -9,12 +9,12 @@ revolution another with symmetry = "axisymmetric". Everything on one thread; cos
 docs/data/plan.csv and the table between the markers of docs/performance.md. Runs in DIR that are finished are not run again.
 """
 
-import argparse
 import os
 import tempfile
 
 from plot_common import run_main
-from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, value_of, write_table
+from validation_table import (NO_FILES, markdown_table, read_table, replace_block, run_scene,
+                              table_arguments, value_of, write_table)
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "plan.csv")
@@ -89,11 +89,8 @@ def table(rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=os.path.join(ROOT, "build", "release", "bin", "ogive"))
-    parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
+    parser = table_arguments(__doc__, os.path.join(ROOT, "build", "release", "bin", "ogive"))
     parser.add_argument("--only", choices=list(SCENES))
-    parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
     arguments = parser.parse_args()
     rows = read_table(DATA)
     if not arguments.table_only:

@@ -12,13 +12,12 @@ other's rows; --table-only writes the table from the data. --check runs the axis
 fails where a result is not that of the data, or is farther from the quarter model's than the discretisation error.
 """
 
-import argparse
 import os
 import tempfile
 
 from measure_steel_ball import measure_run
 from plot_common import Refused, run_main, summary_of
-from validation_table import markdown_table, read_table, replace_block, run_scene, write_table
+from validation_table import markdown_table, read_table, replace_block, run_scene, table_arguments, write_table
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "planar.csv")
@@ -121,13 +120,9 @@ def check(runner, rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=os.path.join(ROOT, "build", "bench", "bin", "ogive"),
-                        help="the program ogive (default build/bench/bin/ogive)")
-    parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
+    parser = table_arguments(__doc__, os.path.join(ROOT, "build", "bench", "bin", "ogive"))
     parser.add_argument("--only", choices=sorted(CELLS), help="run this scene only")
     parser.add_argument("--check", action="store_true", help="nothing is written: are the results as in the data?")
-    parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
     arguments = parser.parse_args()
     rows = read_table(DATA)
     if arguments.check:

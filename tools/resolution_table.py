@@ -12,7 +12,6 @@ that limit. Where p is at one of these bounds no limit is claimed: the error is 
 error is not known. Particles shrink with the cells. Runs in DIR that are finished are not run again.
 """
 
-import argparse
 import concurrent.futures
 import os
 import re
@@ -21,7 +20,8 @@ import tempfile
 import numpy as np
 
 from plot_common import run_main
-from validation_table import NO_FILES, markdown_table, read_table, replace_block, run_scene, value_of, write_table
+from validation_table import (NO_FILES, markdown_table, read_table, replace_block, run_scene,
+                              table_arguments, value_of, write_table)
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "docs", "data", "resolution.csv")
@@ -171,14 +171,11 @@ def delivered_table(rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=os.path.join(ROOT, "build", "release", "bin", "ogive"))
-    parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
+    parser = table_arguments(__doc__, os.path.join(ROOT, "build", "release", "bin", "ogive"))
     parser.add_argument("--jobs", type=int, default=1, help="runs at once")
     parser.add_argument("--only", choices=[series.name for series in SERIES])
     parser.add_argument("--factors", action="store_true", help="run with smaller and larger time steps")
     parser.add_argument("--deliver", action="store_true", help="run with accuracy, by a program that carries the data")
-    parser.add_argument("--table-only", action="store_true", help="no runs: the tables from the data")
     arguments = parser.parse_args()
     rows = read_table(DATA)
     with tempfile.TemporaryDirectory() as temporary:

@@ -1,5 +1,6 @@
 """What the validation tools share: reference tables, many runs side by side, blocks in documents."""
 
+import argparse
 import csv
 import datetime
 import hashlib
@@ -221,6 +222,15 @@ def write_table(path, rows):
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+
+
+def table_arguments(purpose, program):
+    """The parser of a tool that runs scenes with a built program and writes a table: --program, --work, --table-only."""
+    parser = argparse.ArgumentParser(description=purpose, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=program, help="the program ogive")
+    parser.add_argument("--work", help="where the runs go (default: a temporary directory)")
+    parser.add_argument("--table-only", action="store_true", help="no runs: the table from the data")
+    return parser
 
 
 def run_scene(program, scene, directory, settings):

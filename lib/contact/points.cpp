@@ -31,6 +31,7 @@ namespace {
 
 constexpr double look_ahead = 0.1;  // cells: gaps up to here are watched; a particle comes less far in a step
 constexpr double deepest = 0.5;     // cells: deeper inside than this and half its size a particle is not found
+constexpr std::size_t vertices_at_once = 512;
 constexpr int most_passes = 100;
 constexpr double pass_tolerance = 1e-5;  // of the relative velocity
 
@@ -52,34 +53,35 @@ class Feeler {
   }
 
   // Points of a total Lagrangian body's vertices.
-  void feel_vertices(std::int32_t body, std::vector<ContactPoint>& points) const {
+  void feel(const ContactPoints::Piece& piece, std::vector<ContactPoint>& points) const {
     points.clear();
     for (std::int32_t w = 0; w < static_cast<std::int32_t>(model_.walls.size()); ++w)
-      if (by_surface(model_.walls[w].rule)) feel_vertices(body, -1 - w, points);
+      if (by_surface(model_.walls[w].rule)) feel(piece, -1 - w, points);
     for (std::int32_t b = 0; b < static_cast<std::int32_t>(workspace_.surfaces.size()); ++b)
-      if (workspace_.surfaces[b].used && b != body && met_at_points(model_, body, b) && surface_owner(model_, body, b) == b)
-        feel_vertices(body, b, points);
+      if (workspace_.surfaces[b].used && b != piece.body && met_at_points(model_, piece.body, b) &&
+          surface_owner(model_, piece.body, b) == b)
+        feel(piece, b, points);
   }
 
  private:
-  void feel_vertices(std::int32_t body, std::int32_t owner, std::vector<ContactPoint>& points) const {
-    const PlacedSurface& own = workspace_.surfaces[body];
-    const double deep = deepest * model_.grid.cell_size;
+  void feel(const ContactPoints::Piece& piece, std::int32_t owner, std::vector<ContactPoint>& points) const {
+    const PlacedSurface& own = workspace_.surfaces[piece.body];
     if (owner >= 0) {
       const PlacedSurface& other = workspace_.surfaces[owner];
       for (int c = 0; c < 3; ++c)
         if (own.upper[c] < other.lower[c] - ahead_ || own.lower[c] > other.upper[c] + ahead_) return;
     }
-    const std::vector<double>& vertices = state_.bodies[body].surface_vertices;
+    const std::vector<double>& vertices = state_.bodies[piece.body].surface_vertices;
     std::int32_t hint = -1;
-    for (std::size_t v = 0; v < vertices.size() / 3; ++v) {
+    for (std::size_t v = piece.first; v < piece.end; ++v) {
       if (!own.surface.has_vertex(static_cast<std::int64_t>(v))) continue;
       const Vector3 x = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]};
       Vector3 on_face{};
-      if (!inside_faces(x, on_face)) continue;
       SurfacePoint found;
-      if (!nearest_of_owner(model_, workspace_, owner, x, deep, found, &hint)) continue;
-      offer(body, owner, x, found, found.distance, on_face, own.vertex_particle[v], static_cast<std::int32_t>(v), points);
+      if (!inside_faces(x, on_face) || !nearest_of_owner(model_, workspace_, owner, x, deepest * model_.grid.cell_size, found, &hint))
+        continue;
+      const std::int64_t particle = own.vertex_particle.empty() ? -1 : own.vertex_particle[v];
+      offer(piece.body, owner, x, found, found.distance, on_face, particle, static_cast<std::int32_t>(v), points);
     }
   }
 
@@ -483,7 +485,7 @@ std::array<std::int32_t, 3> memory_of(const State& state, const ContactPoint& po
 
 std::int64_t ContactPoints::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
-  std::int64_t total = bytes(points) + bytes(stencils) + bytes(found) + bytes(changes) + bytes(seen) + bytes(share) +
+  std::int64_t total = bytes(points) + bytes(stencils) + bytes(found) + bytes(pieces) + bytes(changes) + bytes(seen) + bytes(share) +
                        bytes(start);
   for (const auto& list : found) total += bytes(list);
   return total;
@@ -504,23 +506,29 @@ void find_points(const Model& model, const State& state, Workspace& workspace) {
   const std::size_t nodes = workspace.nodes.size() + (workspace.reference_grid ? workspace.reference_grid->nodes.size() : 0);
   points.seen.resize(nodes);
   points.share.resize(nodes);
-  points.found.resize(workspace.links.size() + model.bodies.size());
+  points.pieces.clear();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (!state.bodies[b].lagrangian || !workspace.surfaces[b].used) continue;
+    const std::size_t vertices = state.bodies[b].surface_vertices.size() / 3;
+    for (std::size_t v = 0; v < vertices; v += vertices_at_once)
+      points.pieces.push_back({static_cast<std::int32_t>(b), v, std::min(v + vertices_at_once, vertices)});
+  }
+  points.found.resize(workspace.links.size() + points.pieces.size());
   const Feeler feeler(model, state, workspace);
   std::exception_ptr failure;
   const std::int64_t links = static_cast<std::int64_t>(workspace.links.size());
-#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 8) if (links > 8)
-  for (std::int64_t l = 0; l < links; ++l) try {
-      feeler.feel(workspace.links[l], workspace.kernel_groups[l], points.found[l]);
+  const std::int64_t parts = static_cast<std::int64_t>(points.found.size());
+#pragma omp parallel for num_threads(workspace.threads) schedule(dynamic, 8) if (parts > 8)
+  for (std::int64_t i = 0; i < parts; ++i) try {
+      if (i < links)
+        feeler.feel(workspace.links[i], workspace.kernel_groups[i], points.found[i]);
+      else
+        feeler.feel(points.pieces[i - links], points.found[i]);
     } catch (...) {
 #pragma omp critical(ogive_points_failure)
       failure = std::current_exception();
     }
   if (failure) std::rethrow_exception(failure);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    std::vector<ContactPoint>& found = points.found[workspace.links.size() + b];
-    found.clear();
-    if (state.bodies[b].lagrangian && workspace.surfaces[b].used) feeler.feel_vertices(static_cast<std::int32_t>(b), found);
-  }
   std::vector<std::int32_t> rigid_of(model.bodies.size(), -1);
   for (std::size_t r = 0; r < workspace.rigid.size(); ++r)
     rigid_of[workspace.rigid[r].body] = static_cast<std::int32_t>(r);
@@ -666,13 +674,13 @@ void end_points(State& state, Workspace& workspace, double dt) {
 
 void begin_held_points(Workspace& workspace) {
   for (ContactPoint& point : workspace.points.points)
-    if (point.booked) point.kept = end_velocity(workspace, point);
+    if (point.booked) point.unheld = end_velocity(workspace, point);
 }
 
 void book_held_points(State& state, Workspace& workspace) {
   for (const ContactPoint& point : workspace.points.points)
     if (point.booked && point.constraint.hold != Hold::Nothing)
-      state.ledger.contact_dissipation -= 0.5 * dot(point.impulse, minus(end_velocity(workspace, point), point.kept));
+      state.ledger.contact_dissipation -= 0.5 * dot(point.impulse, minus(end_velocity(workspace, point), point.unheld));
 }
 
 }  // namespace ogive

@@ -53,6 +53,7 @@ struct ContactPoint {
   double start_push = 0;
   double part = 1;          // 1/2 for a particle that a face cuts
   bool booked = false;      // of total Lagrangian bodies: what contact takes from them is no strain's
+  Vector3 unheld{};         // booked: the relative velocity after contact, before what else is done to reference grids
   // In the present phase.
   Constraint constraint;
   Vector3 found{};
@@ -64,7 +65,13 @@ struct ContactPoint {
 struct ContactPoints {
   std::vector<ContactPoint> points;
   std::vector<PointNode> stencils;
-  std::vector<std::vector<ContactPoint>> found;  // by link, then by body with vertices; without stencils
+  std::vector<std::vector<ContactPoint>> found;  // by link, then by `pieces`; without stencils
+  // Of a total Lagrangian body's vertices, [first, end).
+  struct Piece {
+    std::int32_t body;
+    std::size_t first, end;
+  };
+  std::vector<Piece> pieces;
   // Nodes that a phase changes, with the velocity before it; `seen[node]`: 1 + its place here, 0: none.
   struct Change {
     std::int32_t node;

@@ -49,38 +49,27 @@ class Stenciler {
     Nodes nodes;
     collect(field, x, nodes);
     if (on_surface) lighten(nodes);
-    for (int i = 0; i < nodes.count; ++i)
-      stencil.push_back({nodes.weight[i], static_cast<std::int32_t>(nodes.record[i] - workspace_.nodes.data())});
+    for (int i = 0; i < nodes.count; ++i) append(nodes, i, nodes.share[i], stencil);
   }
 
   // Appends the stencil of a total Lagrangian body's surface at the place of rest X. `inside`: as deep as the outermost particles,
-  // where the nodes around carry the surface. Their weights w_j = N_j(inside) c_j (1 + (X_j - X_m) . C^-1 (X - X_m)) / sum N c, with
-  // c as above and X_m, C the mean and covariance of the nodes with the weights N c, give linear fields exactly at X: the surface
-  // turns and stretches with the body. Directions in which the nodes hardly spread are left out.
+  // where the nodes around carry the surface. With the weights W_j of `make` there, and X_m, C the mean and covariance of the nodes,
+  // the weights W_j (1 + (X_j - X_m) . C^-1 (X - X_m)) give linear fields exactly at X: the surface turns and stretches with the
+  // body. Directions in which the nodes hardly spread are left out.
   void make_linear(std::int32_t field, const Vector3& X, const Vector3& inside, std::vector<PointNode>& stencil) const {
-    Unfolded nodes;
-    unfold(field, inside, nodes);
-    if (nodes.count == 0) return;
-    double largest = 0, sum = 0;
-    for (int i = 0; i < nodes.count; ++i) largest = std::max(largest, nodes.mass[i]);
+    Nodes nodes;
+    collect(field, inside, nodes);
+    lighten(nodes);
     Vector3 mean{};
-    for (int i = 0; i < nodes.count; ++i) {
-      nodes.share[i] *= nodes.mass[i] / (nodes.mass[i] + light * largest);
-      sum += nodes.share[i];
-      add(mean, times(nodes.share[i], nodes.place[i]));
-    }
-    mean = times(1 / sum, mean);
+    for (int i = 0; i < nodes.count; ++i) add(mean, times(nodes.share[i], nodes.place[i]));
     Matrix3 spread{};
     for (int i = 0; i < nodes.count; ++i) {
       const Vector3 r = minus(nodes.place[i], mean);
-      for (int c = 0; c < 3; ++c) add(spread[c], times(nodes.share[i] / sum * r[c], r));
+      for (int c = 0; c < 3; ++c) add(spread[c], times(nodes.share[i] * r[c], r));
     }
     const Vector3 slope = solve_where_spread(spread, minus(in_cells(X), mean));
-    for (int i = 0; i < nodes.count; ++i) {
-      const Vector3 r = minus(nodes.place[i], mean);
-      const double weight = nodes.share[i] / sum * (1 + dot(r, slope));
-      stencil.push_back({times(weight, nodes.sign[i]), static_cast<std::int32_t>(nodes.record[i] - workspace_.nodes.data())});
-    }
+    for (int i = 0; i < nodes.count; ++i)
+      append(nodes, i, nodes.share[i] * (1 + dot(minus(nodes.place[i], mean), slope)), stencil);
   }
 
   // Velocity at the end of the step (node records: {-, mass | velocity}) of a field's surface at x; false: no mass there.
@@ -90,95 +79,13 @@ class Stenciler {
     lighten(nodes);
     velocity = {};
     for (int i = 0; i < nodes.count; ++i)
-      for (int c = 0; c < 3; ++c) velocity[c] += nodes.weight[i][c] * nodes.record[i]->f[c];
+      for (int c = 0; c < 3; ++c) velocity[c] += nodes.share[i] * nodes.sign[i][c] * nodes.record[i]->f[c];
     return nodes.count > 0;
   }
 
  private:
   static constexpr double light = 0.1;
   static constexpr double least_spread = 0.02;  // square cells
-
-  // Those around a point that have mass, with the weights of the components, and without signs.
-  struct Nodes {
-    int count = 0;
-    const NodeRecord* record[27];
-    Vector3 weight[27];
-    double share[27], mass[27];  // mass: with that of its image, on a mirror face
-  };
-
-  // Along one axis: the nodes with the weights of the vector's component along the axis and of those across it, images in
-  // them, and the weights without signs. The components of nodes held by a fixed face are zero.
-  struct Axis {
-    int count = 0;
-    int index[3];
-    double along[3], across[3], whole[3], images[3];
-    bool held[3];
-  };
-  using Axes = std::array<Axis, 3>;
-
-  Axes axes_at(const Vector3& x) const {
-    const Grid& grid = model_.grid;
-    const int width = model_.numerics.shape_function == ShapeFunction::Linear ? 2 : 3;
-    Axes axes;
-    for (int a = 0; a < 3; ++a) {
-      Axis& axis = axes[a];
-      double w[3];
-      const int first = stencil_weights(model_.numerics.shape_function, (x[a] - grid.domain_min[a]) / grid.cell_size, w);
-      const int last = static_cast<int>(std::lround((grid.domain_max[a] - grid.domain_min[a]) / grid.cell_size));
-      for (int i = 0; i < width; ++i) {
-        if (w[i] == 0) continue;
-        int node = first + i;
-        double sign_along = 1, sign_across = 1;
-        bool held = false;
-        double images = 1;
-        for (int side = 0; side < 2; ++side) {
-          const Face face = grid.face[2 * a + side];
-          if (face == Face::Free) continue;
-          const int plane = side == 0 ? 0 : last;
-          if (node == plane) {
-            sign_along = 0;
-            held = face == Face::Fixed;
-            images = 2;
-          } else if (side == 0 ? node < plane : node > plane) {
-            node = 2 * plane - node;
-            sign_along = -1;
-            if (face == Face::Fixed) sign_across = -1;
-          }
-        }
-        int at = 0;
-        while (at < axis.count && axis.index[at] != node) ++at;
-        if (at == axis.count) {
-          ++axis.count;
-          axis.index[at] = node;
-          axis.along[at] = axis.across[at] = axis.whole[at] = 0;
-          axis.held[at] = held;
-          axis.images[at] = images;
-        }
-        axis.along[at] += sign_along * w[i];
-        axis.across[at] += sign_across * w[i];
-        axis.whole[at] += w[i];
-      }
-    }
-    return axes;
-  }
-
-  void collect(std::int32_t field, const Vector3& at, Nodes& nodes) const {
-    const Axes axes = axes_at(at);
-    const auto& [x, y, z] = axes;
-    for (int k = 0; k < z.count; ++k)
-      for (int j = 0; j < y.count; ++j)
-        for (int i = 0; i < x.count; ++i) {
-          const NodeRecord* record = node_of(field, {x.index[i], y.index[j], z.index[k]});
-          if (!record || !(record->v[3] > 0)) continue;
-          Vector3& weight = nodes.weight[nodes.count];
-          weight = {x.along[i] * y.across[j] * z.across[k], x.across[i] * y.along[j] * z.across[k],
-                    x.across[i] * y.across[j] * z.along[k]};
-          if (x.held[i] || y.held[j] || z.held[k]) weight = {};
-          nodes.share[nodes.count] = x.whole[i] * y.whole[j] * z.whole[k];
-          nodes.mass[nodes.count] = record->v[3] * x.images[i] * y.images[j] * z.images[k];
-          nodes.record[nodes.count++] = record;
-        }
-  }
 
   // C^-1 r by elimination, the widest direction first; zero along those that are left out.
   static Vector3 solve_where_spread(Matrix3 C, Vector3 r) {
@@ -204,12 +111,14 @@ class Stenciler {
     return solution;
   }
 
-  // The same with images beyond faces for themselves; sign: what of the image's components it has, 0 where a face holds them.
-  struct Unfolded {
+  // Those around a point that have mass, images beyond faces for themselves.
+  struct Nodes {
     int count = 0;
     const NodeRecord* record[27];
-    Vector3 place[27], sign[27];  // place in cells from domain_min
-    double share[27], mass[27];
+    Vector3 place[27];  // in cells from domain_min; of an image its own
+    Vector3 sign[27];   // of an image's components: -1 or 0 where the face turns or holds them
+    double share[27];   // the shape function
+    double mass[27];    // with that of its image, on a face
   };
 
   Vector3 in_cells(const Vector3& x) const {
@@ -218,64 +127,67 @@ class Stenciler {
     return xi;
   }
 
-  void unfold(std::int32_t field, const Vector3& x, Unfolded& nodes) const {
+  void collect(std::int32_t field, const Vector3& x, Nodes& nodes) const {
+    // Along each axis.
+    struct Line {
+      double weight[3], images[3];
+      int first, real[3];
+      Vector3 sign[3];
+    } lines[3];
     const Grid& grid = model_.grid;
-    const ShapeFunction shape = model_.numerics.shape_function;
-    const int width = shape == ShapeFunction::Linear ? 2 : 3;
     const Vector3 xi = in_cells(x);
-    double w[3][3];
-    int first[3], real[3][3];
-    bool on_face[3][3] = {}, beyond[3][3] = {}, fixed[3][3] = {};
+    const int width = model_.numerics.shape_function == ShapeFunction::Linear ? 2 : 3;
     for (int a = 0; a < 3; ++a) {
-      first[a] = stencil_weights(shape, xi[a], w[a]);
+      Line& line = lines[a];
+      line.first = stencil_weights(model_.numerics.shape_function, xi[a], line.weight);
       const int last = static_cast<int>(std::lround((grid.domain_max[a] - grid.domain_min[a]) / grid.cell_size));
       for (int i = 0; i < width; ++i) {
-        real[a][i] = first[a] + i;
+        line.real[i] = line.first + i;
+        line.images[i] = 1;
+        line.sign[i] = {1, 1, 1};
         for (int side = 0; side < 2; ++side) {
+          const Face face = grid.face[2 * a + side];
           const int plane = side == 0 ? 0 : last;
-          if (grid.face[2 * a + side] == Face::Free) continue;
-          on_face[a][i] = on_face[a][i] || real[a][i] == plane;
-          if (side == 0 ? real[a][i] < plane : real[a][i] > plane) {
-            real[a][i] = 2 * plane - real[a][i];
-            beyond[a][i] = true;
-          }
-          if (on_face[a][i] || beyond[a][i]) fixed[a][i] = grid.face[2 * a + side] == Face::Fixed;
+          const bool beyond = side == 0 ? line.real[i] < plane : line.real[i] > plane, on = line.real[i] == plane;
+          if (face == Face::Free || !(beyond || on)) continue;
+          if (on) line.images[i] = 2;
+          line.real[i] = 2 * plane - line.real[i];
+          for (int c = 0; c < 3; ++c)
+            if (c == a || face == Face::Fixed) line.sign[i][c] = on ? 0 : -1;
         }
       }
     }
+    const auto& [X, Y, Z] = lines;
     for (int k = 0; k < width; ++k)
       for (int j = 0; j < width; ++j)
         for (int i = 0; i < width; ++i) {
-          const int at[3] = {i, j, k};
-          const double share = w[0][i] * w[1][j] * w[2][k];
+          const double share = X.weight[i] * Y.weight[j] * Z.weight[k];
           if (share == 0) continue;
-          const NodeRecord* record = node_of(field, {real[0][i], real[1][j], real[2][k]});
+          const NodeRecord* record = node_of(field, {X.real[i], Y.real[j], Z.real[k]});
           if (!record || !(record->v[3] > 0)) continue;
-          Vector3 sign = {1, 1, 1};
-          double mass = record->v[3];
-          for (int a = 0; a < 3; ++a) {
-            const bool plane = on_face[a][at[a]];
-            if (plane) mass *= 2;
-            for (int c = 0; c < 3; ++c)
-              if (c == a || fixed[a][at[a]]) sign[c] *= plane ? 0 : beyond[a][at[a]] ? -1 : 1;
-          }
-          nodes.share[nodes.count] = share;
-          nodes.mass[nodes.count] = mass;
-          nodes.sign[nodes.count] = sign;
-          for (int a = 0; a < 3; ++a) nodes.place[nodes.count][a] = first[a] + at[a];
-          nodes.record[nodes.count++] = record;
+          const int n = nodes.count++;
+          nodes.record[n] = record;
+          nodes.place[n] = {static_cast<double>(X.first + i), static_cast<double>(Y.first + j), static_cast<double>(Z.first + k)};
+          for (int c = 0; c < 3; ++c) nodes.sign[n][c] = X.sign[i][c] * Y.sign[j][c] * Z.sign[k][c];
+          nodes.share[n] = share;
+          nodes.mass[n] = record->v[3] * X.images[i] * Y.images[j] * Z.images[k];
         }
   }
 
+  // Shares become N_j c_j / sum_k N_k c_k.
   static void lighten(Nodes& nodes) {
-    double largest = 0, sum = 0, part[27];
+    double largest = 0, sum = 0;
     for (int i = 0; i < nodes.count; ++i) largest = std::max(largest, nodes.mass[i]);
     for (int i = 0; i < nodes.count; ++i) {
-      part[i] = nodes.mass[i] / (nodes.mass[i] + light * largest);
-      sum += nodes.share[i] * part[i];
+      nodes.share[i] *= nodes.mass[i] / (nodes.mass[i] + light * largest);
+      sum += nodes.share[i];
     }
     const double inverse = 1 / sum;
-    for (int i = 0; i < nodes.count; ++i) nodes.weight[i] = times(part[i] * inverse, nodes.weight[i]);
+    for (int i = 0; i < nodes.count; ++i) nodes.share[i] *= inverse;
+  }
+
+  void append(const Nodes& nodes, int i, double weight, std::vector<PointNode>& stencil) const {
+    stencil.push_back({times(weight, nodes.sign[i]), static_cast<std::int32_t>(nodes.record[i] - workspace_.nodes.data())});
   }
 
   // A stencil lies in at most eight blocks, of which no two have the same parities.

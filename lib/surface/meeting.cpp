@@ -69,10 +69,9 @@ void prepare_surfaces(const Model& model, Workspace& workspace) {
   }
 }
 
-// Vertices beyond a mirror as their images.
-static bool into_model(const Model& model, Vector3& x, Vector3& sign) {
-  bool changed = false;
-  sign = {1, 1, 1};
+// Takes what lies beyond a mirror to its image; the signs of the components there.
+static Vector3 into_model(const Model& model, Vector3& x) {
+  Vector3 sign = {1, 1, 1};
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       const double plane = side == 0 ? model.grid.domain_min[axis] : model.grid.domain_max[axis];
@@ -80,9 +79,8 @@ static bool into_model(const Model& model, Vector3& x, Vector3& sign) {
       if (!beyond || model.grid.face[2 * axis + side] != Face::Symmetry) continue;
       x[axis] = 2 * plane - x[axis];
       sign[axis] = -1;
-      changed = true;
     }
-  return changed;
+  return sign;
 }
 
 // Of a total Lagrangian body as it lay at rest.
@@ -135,34 +133,35 @@ static void link_vertices(const Model& model, const BodyState& body, int index, 
     for (std::int64_t p = group.begin; p < group.begin + group.count; ++p) mass += body.reference.position[4 * p + 3];
   const double depth = 0.5 * std::cbrt(mass / (model.material_of(index).density * static_cast<double>(body.particles)));
   const std::vector<double>& vertices = model.bodies[index].surface.vertices;
-  const Surface& surface = placed.surface;
-  const Surface at_rest = [&] {
-    Surface copy = surface;
-    copy.move(vertices);
-    return copy;
-  }();
+  Surface at_rest = placed.surface;
+  at_rest.move(vertices);
   const Stenciler stenciler(model, reference);
-  const NearestParticle nearest(model, body);
-  placed.vertex_particle.clear();
   placed.vertex_inward.assign(vertices.size() / 3, Vector3{});
   placed.vertex_nodes.clear();
   placed.vertex_ends.clear();
   for (std::int64_t v = 0; v < static_cast<std::int64_t>(vertices.size() / 3); ++v) {
-    if (surface.has_vertex(v)) {
-      Vector3 X = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]}, sign;
+    if (at_rest.has_vertex(v)) {
+      Vector3 X = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]};
       placed.vertex_inward[v] = times(-depth, at_rest.normal_at_vertex(v));
       Vector3 inside = plus(X, placed.vertex_inward[v]);
-      into_model(model, X, sign);
-      Vector3 unused;
-      into_model(model, inside, unused);
+      const Vector3 sign = into_model(model, X);
+      into_model(model, inside);
       const std::size_t first = placed.vertex_nodes.size();
       stenciler.make_linear(index, X, inside, placed.vertex_nodes);
       for (std::size_t e = first; e < placed.vertex_nodes.size(); ++e)
         for (int c = 0; c < 3; ++c) placed.vertex_nodes[e].weight[c] *= sign[c];
     }
     placed.vertex_ends.push_back(static_cast<std::int64_t>(placed.vertex_nodes.size()));
-    placed.vertex_particle.push_back(nearest.to({vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]}));
   }
+}
+
+// Methods that look at the stress take that of the particle next to a vertex.
+static void find_particles(const Model& model, const BodyState& body, int index, PlacedSurface& placed) {
+  const std::vector<double>& vertices = model.bodies[index].surface.vertices;
+  const NearestParticle nearest(model, body);
+  placed.vertex_particle.clear();
+  for (std::size_t v = 0; v < vertices.size(); v += 3)
+    placed.vertex_particle.push_back(nearest.to({vertices[v], vertices[v + 1], vertices[v + 2]}));
 }
 
 void place_surfaces(const Model& model, const State& state, Workspace& workspace) {
@@ -170,8 +169,10 @@ void place_surfaces(const Model& model, const State& state, Workspace& workspace
     PlacedSurface& placed = workspace.surfaces[b];
     if (!placed.used) continue;
     if (!model.bodies[b].rigid()) placed.surface.move(state.bodies[b].surface_vertices);
-    if (state.bodies[b].lagrangian && placed.vertex_ends.empty())
+    if (state.bodies[b].lagrangian && placed.vertex_ends.empty()) {
       link_vertices(model, state.bodies[b], static_cast<int>(b), *workspace.reference_grid, placed);
+      if (workspace.contact_needs.stress) find_particles(model, state.bodies[b], static_cast<int>(b), placed);
+    }
     const RigidState& rigid = state.bodies[b].rigid;
     placed.moved = model.bodies[b].rigid();
     placed.turn = rigid.turn;
@@ -216,8 +217,8 @@ void move_surfaces(const Model& model, State& state, const Workspace& workspace,
               velocity[v][c] += placed.vertex_nodes[e].weight[c] * reference.nodes[placed.vertex_nodes[e].node].f[c];
           continue;
         }
-        Vector3 x = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]}, sign;
-        into_model(model, x, sign);
+        Vector3 x = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]};
+        const Vector3 sign = into_model(model, x);
         found[v] = stenciler.end_velocity_on_surface(model.field_of(static_cast<int>(b)), x, velocity[v]);
         for (int c = 0; c < 3; ++c) velocity[v][c] *= sign[c];
       }

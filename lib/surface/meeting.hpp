@@ -24,8 +24,7 @@ void prepare_surfaces(const Model& model, Workspace& workspace);
 void place_surfaces(const Model& model, const State& state, Workspace& workspace);
 
 // Once the velocities at the end of the step stand in {velocity, mass | end velocity} of the common and the reference grid: moves
-// the vertices of deformable bodies.
-// One that finds no material of its body goes with the mean of the others.
+// the vertices of deformable bodies. One that finds no material of its body goes with the mean of the others.
 void move_surfaces(const Model& model, State& state, const Workspace& workspace, double dt);
 
 // The nearest point of an owner's surface (walls: -1 - wall) within reach.

@@ -9,31 +9,13 @@
 #include <random>
 
 #include "error.hpp"
-#include "solids.hpp"
+#include "solid_surfaces.hpp"
 
 using namespace ogive;
 
 namespace {
 
 constexpr double far = 1e3;
-const Vector3 nowhere = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-                         -std::numeric_limits<double>::infinity()};
-const Vector3 everywhere = times(-1, nowhere);
-
-SurfaceDef solid(SurfaceKind kind, Vector3 size, Vector3 origin = {}, Vector3 axis = {0, 0, 1}) {
-  SolidDef def;
-  def.shape = static_cast<SolidShape>(kind);
-  def.size = size;
-  def.axis = axis;
-  def.spacing = {1, 1, 1};
-  SurfaceDef surface;
-  surface.kind = kind;
-  surface.size = size;
-  surface.origin = origin;
-  surface.axes = solid_axes(def);
-  return surface;
-}
-
 SurfaceDef triangles_of_box(Vector3 size, Vector3 origin = {}) {
   SurfaceDef surface;
   surface.kind = SurfaceKind::Triangles;

@@ -11,28 +11,11 @@
 #include <set>
 
 #include "error.hpp"
-#include "solids.hpp"
+#include "solid_surfaces.hpp"
 
 using namespace ogive;
 
 namespace {
-
-SurfaceDef solid(SurfaceKind kind, Vector3 size, Vector3 origin = {}, Vector3 axis = {0, 0, 1}) {
-  SolidDef def;
-  def.shape = static_cast<SolidShape>(kind);
-  def.size = size;
-  def.axis = axis;
-  def.spacing = {1, 1, 1};
-  SurfaceDef surface;
-  surface.kind = kind;
-  surface.size = size;
-  surface.origin = origin;
-  surface.axes = solid_axes(def);
-  return surface;
-}
-
-const Vector3 everywhere = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-                            std::numeric_limits<double>::infinity()};
 
 Vector3 vertex(const SurfaceDef& surface, std::int32_t v) {
   return {surface.vertices[3 * v], surface.vertices[3 * v + 1], surface.vertices[3 * v + 2]};
@@ -68,7 +51,7 @@ TEST(Tessellate, GivesClosedSurfacesWhoseVerticesLieOnTheSolid) {
       const SurfaceDef exact = solid(at.kind, at.size, {0.3, -2, 1}, {0.3, 0.4, -1});
       const SurfaceDef surface = tessellate(exact, size);
       check_triangles(surface.vertices, surface.corners);
-      const Surface distances(exact, times(-1, everywhere), everywhere);
+      const Surface distances(exact, nowhere, everywhere);
       double worst = 0, longest = 0;
       for (std::size_t v = 0; v < surface.vertices.size() / 3; ++v) {
         SurfacePoint found;

@@ -151,3 +151,23 @@ TEST(Change, ThatCannotBeConsistentIsRefusedByNameAndCanBeTakenBack) {
   straight.steps(before + after);
   expect_same_bits(straight, scene);
 }
+
+// A surface that no rule asked for has not moved with its body.
+TEST(Change, ToContactByASurfaceThatHasNotMovedIsRefused) {
+  Scene scene;
+  scene.grid(1, {-6, -6, -6}, {6, 6, 6});
+  const ogive_material_id metal = scene.material("metal", steel());
+  const ogive_body_id ball = scene.add("ball", Scene::rigid(metal, OGIVE_FORMULATION_RIGID_FREE, {0, 0, -5}),
+                                       Scene::solid(OGIVE_SOLID_SPHERE, {0, 0, 3}, {2, 0, 0}, 0.5));
+  const ogive_body_id block = scene.box("block", metal, {-3, -3, -1}, {3, 3, 0.9}, 0.5, {0, 0, 0});
+  ogive_body_def lagrangian = Scene::body(metal, {0, 0, 0});
+  lagrangian.formulation = OGIVE_FORMULATION_TOTAL_LAGRANGIAN;
+  scene.add("bar", lagrangian, Scene::solid(OGIVE_SOLID_BOX, {0, 0, -3.5}, {4, 4, 3}, 0.5));
+  const ogive_contact_def by_surface = Scene::contact_def(OGIVE_CONTACT_PERSISTENT, OGIVE_DETECTION_SURFACE);
+  scene.check(ogive_contact_set_pair(scene.get(), ball, block, &by_surface));
+  scene.prepare();
+  scene.steps(10);
+  const std::string words = refusal(scene, [&] { scene.check(ogive_world_set_contact(scene.get(), &by_surface)); });
+  EXPECT_NE(words.find("contact detection: cannot be changed"), std::string::npos) << words;
+  EXPECT_NE(words.find("\"bar\""), std::string::npos) << words;
+}

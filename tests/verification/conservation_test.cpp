@@ -14,15 +14,6 @@ double sum_of(const ogive_ledger& l) {
          l.external_work;
 }
 
-// Largest component of: momentum in the domain + what left - what faces and gravity gave - what there was.
-double momentum_miss(const ogive_ledger& before, const ogive_ledger& after) {
-  double worst = 0;
-  for (int c = 0; c < 3; ++c)
-    worst = std::max(worst, std::abs(after.momentum[c] + after.left_domain_momentum[c] - after.boundary_impulse[c] -
-                                     after.external_impulse[c] - before.momentum[c]));
-  return worst;
-}
-
 }  // namespace
 
 TEST_P(Conservation, AnElasticImpactKeepsItsEnergy) {

@@ -15,15 +15,6 @@ double distance(const double (&a)[3], const double (&b)[3]) {
 }
 double size(const double (&a)[3]) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
-// Largest component of: momentum - what boundaries and gravity gave - what there was.
-double momentum_miss(const ogive_ledger& before, const ogive_ledger& after) {
-  double worst = 0;
-  for (int c = 0; c < 3; ++c)
-    worst = std::max(worst, std::abs(after.momentum[c] - after.boundary_impulse[c] - after.external_impulse[c] -
-                                     before.momentum[c]));
-  return worst;
-}
-
 }  // namespace
 
 TEST(RigidBody, HasTheInertiaOfItsSolid) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -288,6 +289,15 @@ class Scene {
  private:
   std::unique_ptr<ogive_world, Destroy> world_;
 };
+
+// Largest component of: momentum in the domain + what left - what faces, gravity and loads gave - what there was.
+inline double momentum_miss(const ogive_ledger& before, const ogive_ledger& after) {
+  double worst = 0;
+  for (int c = 0; c < 3; ++c)
+    worst = std::max(worst, std::abs(after.momentum[c] + after.left_domain_momentum[c] - after.boundary_impulse[c] -
+                                     after.external_impulse[c] - before.momentum[c]));
+  return worst;
+}
 
 inline bool same_bits(const void* a, const void* b, std::size_t bytes) { return std::memcmp(a, b, bytes) == 0; }
 

@@ -75,4 +75,20 @@ inline void expect_same_bits(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.progress().particle_steps, b.progress().particle_steps);
 }
 
+// make(threads) is a scene: the same bits after `steps` with one thread, with two, and over a save after `saved` steps.
+template <class Make>
+void expect_same_bits_with_threads_and_over_a_restart(Make&& make, int steps, int saved) {
+  Scene one = make(1), two = make(2), first = make(1), second;
+  one.steps(steps);
+  two.steps(steps);
+  expect_same_bits(one, two);
+  first.steps(saved);
+  Store store;
+  store.save(first);
+  store.load(second);
+  expect_same_bits(first, second);
+  second.steps(steps - saved);
+  expect_same_bits(one, second);
+}
+
 }  // namespace verification

@@ -12,14 +12,6 @@ namespace {
 constexpr std::int32_t free_body = OGIVE_FORMULATION_RIGID_FREE, prescribed = OGIVE_FORMULATION_RIGID_PRESCRIBED;
 constexpr std::int32_t by_surface = OGIVE_DETECTION_SURFACE;
 
-double momentum_miss(const ogive_ledger& before, const ogive_ledger& after) {
-  double worst = 0;
-  for (int c = 0; c < 3; ++c)
-    worst = std::max(worst, std::abs(after.momentum[c] - after.boundary_impulse[c] - after.external_impulse[c] -
-                                     before.momentum[c]));
-  return worst;
-}
-
 // A rigid sphere or cylinder of radius 1.6 from rest on a wall or on a rigid slab inclined by `angle`: its way over the exact
 // one. Huang et al. 2010, Eq. (36).
 double rolling(double angle, double friction, double cell, bool sphere, bool slab) {
@@ -319,17 +311,8 @@ TEST(SurfaceContact, MovesToTheSameBitsWithAnyNumberOfThreadsAndOverARestart) {
                                                          {OGIVE_CONTACT_PAN_2008, OGIVE_UPDATE_STRESS_FIRST},
                                                          {OGIVE_CONTACT_BARDENHAGEN_2001, OGIVE_UPDATE_STRESS_FIRST}};
   for (const auto& [method, order] : cases) {
-    Scene one = many(true, 1, method, order), two = many(true, 2, method, order), first = many(true, 1, method, order), second;
-    one.steps(90);
-    two.steps(90);
-    expect_same_bits(one, two);
-    first.steps(51);
-    Store store;
-    store.save(first);
-    store.load(second);
-    expect_same_bits(first, second);
-    second.steps(39);
-    expect_same_bits(one, second);
+    const auto make = [method = method, order = order](int threads) { return many(true, threads, method, order); };
+    expect_same_bits_with_threads_and_over_a_restart(make, 90, 51);
   }
 }
 
