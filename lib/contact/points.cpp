@@ -87,15 +87,16 @@ class Feeler {
 
   // False for what lies beyond a mirror.
   bool inside_faces(const Vector3& x, Vector3& on_face) const {
+    const double on = 1e-9 * model_.grid.cell_size;
+    bool inside = true;
     for (int axis = 0; axis < 3; ++axis)
       for (int side = 0; side < 2; ++side) {
         if (model_.grid.face[2 * axis + side] == Face::Free) continue;
-        const double inside =
-            side == 0 ? x[axis] - model_.grid.domain_min[axis] : model_.grid.domain_max[axis] - x[axis];
-        if (inside < -1e-9 * model_.grid.cell_size) return false;
-        if (inside <= 1e-9 * model_.grid.cell_size) on_face[axis] = 1;
+        const double depth = side == 0 ? x[axis] - model_.grid.domain_min[axis] : model_.grid.domain_max[axis] - x[axis];
+        if (std::abs(depth) <= on) on_face[axis] = 1;
+        inside = inside && depth >= -on;
       }
-    return true;
+    return inside;
   }
 
   void feel(const GroupLinks& link, const KernelGroup& group, std::int32_t owner, std::vector<ContactPoint>& points) const {
@@ -462,18 +463,6 @@ void book(State& state, Workspace& workspace, const Phase& phase, bool at_end, d
   }
 }
 
-// Relative velocity of the total Lagrangian sides at the end of the step.
-Vector3 end_velocity(Workspace& workspace, const ContactPoint& point) {
-  Vector3 v{};
-  for (const PointSide* side : {&point.a, &point.b})
-    for (std::int32_t e = side->first; side->lagrangian && e < side->first + side->count; ++e) {
-      const PointNode& entry = workspace.points.stencils[e];
-      const double* node = node_record(workspace, entry.node).f;
-      for (int c = 0; c < 3; ++c) v[c] += (side == &point.a ? 1 : -1) * entry.weight[c] * node[c];
-    }
-  return v;
-}
-
 // A particle's or vertex's memory of contact stands beside those of nodes.
 std::array<std::int32_t, 3> memory_of(const State& state, const ContactPoint& point) {
   constexpr std::int32_t beside = std::numeric_limits<std::int32_t>::min();
@@ -485,8 +474,8 @@ std::array<std::int32_t, 3> memory_of(const State& state, const ContactPoint& po
 
 std::int64_t ContactPoints::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
-  std::int64_t total = bytes(points) + bytes(stencils) + bytes(found) + bytes(pieces) + bytes(changes) + bytes(seen) + bytes(share) +
-                       bytes(start);
+  std::int64_t total = bytes(points) + bytes(stencils) + bytes(found) + bytes(pieces) + bytes(changes) + bytes(seen) +
+                       bytes(share) + bytes(start);
   for (const auto& list : found) total += bytes(list);
   return total;
 }
@@ -672,15 +661,17 @@ void end_points(State& state, Workspace& workspace, double dt) {
       remember(state.contact_memory, memory_of(state, point), point.a.body, point.b.body);
 }
 
-void begin_held_points(Workspace& workspace) {
+void begin_held_points(const State& state, Workspace& workspace) {
+  const Phase phase(state, workspace, workspace.rigid, true, StartUse::MotionAndStrain, 1);
   for (ContactPoint& point : workspace.points.points)
-    if (point.booked) point.unheld = end_velocity(workspace, point);
+    if (point.booked) point.unheld = phase.relative(point);
 }
 
 void book_held_points(State& state, Workspace& workspace) {
+  const Phase phase(state, workspace, workspace.rigid, true, StartUse::MotionAndStrain, 1);
   for (const ContactPoint& point : workspace.points.points)
     if (point.booked && point.constraint.hold != Hold::Nothing)
-      state.ledger.contact_dissipation -= 0.5 * dot(point.impulse, minus(end_velocity(workspace, point), point.unheld));
+      state.ledger.contact_dissipation -= 0.5 * dot(point.impulse, minus(phase.relative(point), point.unheld));
 }
 
 }  // namespace ogive

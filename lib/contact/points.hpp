@@ -1,10 +1,11 @@
 // Contact at points of a surface (detection "surface"): docs/theory.md, section 6.5.
 //
 // Of a pair one body owns the surface (or it is a wall); the other is felt by its particles, or, if it is total Lagrangian, by the
-// vertices of its own surface. A particle whose own surface, or a vertex that is about to meet the owner's is a contact point: there, and not at the nodes around, the velocities of the two are
-// compared and an impulse acts. The felt body's velocity at the point is sum_j N_j(x_p) v_j and its nodes take N_j(x_p) of
-// the impulse, so that momentum is kept to round-off; a rigid owner takes it where its surface is. A total Lagrangian body has
-// its velocity from the nodes of its reference grid, N_a(X_p), and gives them its impulses, without the common grid between.
+// vertices of its own surface. A particle whose own surface, or a vertex that is about to meet the owner's is a contact point:
+// there, and not at the nodes around, the velocities of the two are compared and an impulse acts. The felt body's velocity at the
+// point is sum_j N_j(x_p) v_j and its nodes take N_j(x_p) of the impulse, so that momentum is kept to round-off; a rigid owner takes
+// it where its surface is. A total Lagrangian body has its velocity from the nodes of its reference grid, N_a(X_p), and gives them
+// its impulses, without the common grid between.
 #pragma once
 
 #include <array>
@@ -100,7 +101,7 @@ void start_points(const Model& model, State& state, Workspace& workspace, std::v
 void return_start_points(Workspace& workspace);
 void end_points(State& state, Workspace& workspace, double dt);
 // What is done to reference grids after contact changes what it has taken from them: before and after.
-void begin_held_points(Workspace& workspace);
+void begin_held_points(const State& state, Workspace& workspace);
 void book_held_points(State& state, Workspace& workspace);
 
 }  // namespace ogive

@@ -426,7 +426,7 @@ void hold_lagrangian(const Model& model, State& state, Workspace& workspace, dou
   hold_faces(state, reference);
   if (!reference.prescribed_points.empty()) {
     contact.begin_change(workspace);
-    begin_held_points(workspace);
+    begin_held_points(state, workspace);
     prescribe_points(state, reference, dt);
     contact.end_change(workspace);
     book_held_contact(state, workspace);
