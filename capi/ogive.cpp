@@ -937,6 +937,7 @@ void ogive_numerics_def_init(ogive_numerics_def* def, size_t size) {
   defaults.xpic_order = numerics.xpic_order;
   defaults.energy_warning = numerics.energy_warning;
   defaults.energy_limit = numerics.energy_limit;
+  defaults.energy_loss_limit = numerics.energy_loss_limit;
   defaults.drop_debris = numerics.drop_debris;
   defaults.skip_resting = numerics.skip_resting;
   initialise(def, size, defaults);
@@ -957,6 +958,7 @@ ogive_status ogive_world_set_numerics(ogive_world* world, const ogive_numerics_d
     trial.numerics.xpic_order = full.xpic_order;
     trial.numerics.energy_warning = full.energy_warning;
     trial.numerics.energy_limit = full.energy_limit;
+    trial.numerics.energy_loss_limit = full.energy_loss_limit;
     if (full.drop_debris != 0 && full.drop_debris != 1)
       refuse("drop_debris: must be 0 or 1, got " + std::to_string(full.drop_debris));
     trial.numerics.drop_debris = full.drop_debris != 0;
@@ -1592,16 +1594,24 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     full.initial_total = state.ledger.initial_total;
     full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.dropped_energy +
                  full.friction_dissipation + full.contact_dissipation +
-                 full.transfer_dissipation - full.external_work - full.prescribed_work;
+                 full.transfer_dissipation - full.external_work - full.prescribed_work - full.boundary_work;
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
     const double growth = energy_growth(world->model, state, world->workspace.threads);
+    full.energy_unaccounted = growth;
     const bool larger = growth > state.energy_watch.largest_growth;
     full.energy_growth = larger ? growth : state.energy_watch.largest_growth;
     full.energy_growth_time = larger ? state.time : state.energy_watch.largest_growth_time;
     full.energy_warning_time = state.energy_watch.warning_time;
     if (full.energy_warning_time < 0 && growth > world->model.numerics.energy_warning) full.energy_warning_time = state.time;
     deliver(full, ledger, "ledger");
+  });
+}
+
+ogive_status ogive_world_check_energy(const ogive_world* world) {
+  return guarded(world, [&] {
+    require_prepared(world, "ogive_world_check_energy");
+    check_energy(world->model, world->state, energy_growth(world->model, world->state, world->workspace.threads));
   });
 }
 

@@ -220,6 +220,8 @@ typedef struct ogive_numerics_def {
                                they are computed too. No bit of any result depends on it (docs/theory.md, section 9a); never
                                left out: what gravity or a load acts on, total Lagrangian bodies, anything where contact is by
                                surfaces. Default 1 */
+  double energy_loss_limit; /* [-] loss of energy that no term of the ledger has (a negative growth) at which a step fails as at
+                               energy_limit. > 0, infinity allowed. Default 1: as good as never */
 } ogive_numerics_def;
 OGIVE_API void ogive_numerics_def_init(ogive_numerics_def* def, size_t size);
 /* Before ogive_world_prepare; another call replaces them. */
@@ -615,11 +617,11 @@ OGIVE_API ogive_status ogive_world_progress(const ogive_world* world, ogive_prog
 
 /* Mass, momentum and energy of the whole world. The energies of what is modelled: a half model has half of them.
  *   total    = kinetic + internal + failure_loss + left_domain_energy + dropped_energy + friction_dissipation
- *            + transfer_dissipation + contact_dissipation - external_work - prescribed_work
+ *            + transfer_dissipation + contact_dissipation - external_work - prescribed_work - boundary_work
  *   residual = total - initial_total; what no term accounts for
- * contact_work and boundary_work are what inelastic nodal contact and clamps took from the kinetic energy of the grid.
- * Particles lose less than that (they carry motion that the grid does not see), so these are indicators and part of no
- * sum: compare them between runs, not with the residual. */
+ * contact_work is what inelastic nodal contact took from the kinetic energy of the grid. Particles lose less than that (they
+ * carry motion that the grid does not see), so it is an indicator and part of no sum: compare it between runs, not with the
+ * residual. */
 typedef struct ogive_ledger {
   uint32_t struct_size;
   uint32_t reserved0;
@@ -640,7 +642,7 @@ typedef struct ogive_ledger {
   double transfer_dissipation; /* kinetic energy that affine velocities or mixing in the grid's velocity took out: motion
                                   below the grid's resolution. 0 to round-off with plain FLIP */
   double contact_work;         /* kinetic energy of the grid taken (< 0) by the normal contact forces */
-  double boundary_work;        /* likewise by faces and clamps */
+  double boundary_work;        /* work of the clamps on the particles (< 0: taken from them); symmetry and fixed faces do none */
   double external_work;        /* by gravity, loads and forces of the host */
   double initial_total;        /* total when the world was prepared */
   double total;                /* the sum above */
@@ -664,9 +666,15 @@ typedef struct ogive_ledger {
   double dropped_momentum[3];  /* [M L/T] */
   double dropped_angular_momentum[3]; /* [M L2/T] about the origin, with that of affine velocities */
   double dropped_energy;       /* kinetic + internal */
+  double energy_unaccounted;   /* [-] energy_growth as it is now; < 0: a loss */
 } ogive_ledger;
 /* After ogive_world_prepare; a pass over all particles. struct_size must be set by the caller. */
 OGIVE_API ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger);
+
+/* Fails as a step does, with OGIVE_ERROR_NUMERICAL and the same message, where the energy is now beyond energy_limit or
+ * energy_loss_limit: steps look at every 25th alone, a host at the end of its run. Changes nothing. After ogive_world_prepare; a
+ * pass over all particles. */
+OGIVE_API ogive_status ogive_world_check_energy(const ogive_world* world);
 
 /* Number of bodies; ids are 0 .. number - 1. 0 for a NULL world. */
 OGIVE_API int32_t ogive_body_count(const ogive_world* world);

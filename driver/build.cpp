@@ -128,6 +128,7 @@ class Builder {
     assign(def.xpic_order, scene_.numerics.xpic_order);
     assign(def.energy_warning, scene_.numerics.energy_warning);
     assign(def.energy_limit, scene_.numerics.energy_limit);
+    assign(def.energy_loss_limit, scene_.numerics.energy_loss_limit);
     assign(def.drop_debris, scene_.numerics.drop_debris);
     assign(def.skip_resting, scene_.numerics.skip_resting);
     require(ogive_world_set_numerics(world_, &def), "numerics");

@@ -195,6 +195,7 @@ Json energy_json(const ogive_ledger& ledger) {
   json["initial_total"] = ledger.initial_total;
   json["residual"] = ledger.residual;
   json["residual_relative"] = ledger.residual_relative;
+  json["unaccounted"] = ledger.energy_unaccounted;
   json["growth"] = ledger.energy_growth;
   json["growth_time"] = ledger.energy_growth_time;
   json["warning_time"] = ledger.energy_warning_time < 0 ? Json() : Json(ledger.energy_warning_time);

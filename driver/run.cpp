@@ -182,10 +182,10 @@ class Simulation {
     const ogive_ledger ledger = ledger_of(world_.get());
     std::vector<std::string> warnings;
     if (ledger.energy_warning_time >= 0) warnings.push_back(energy_warning(ledger));
-    if (const double part = unaccounted(ledger); ledger.energy_warning_time < 0 && std::abs(part) > kOpenLedger)
-      warnings.push_back("the energy ledger does not close: " + brief(100 * part) + " % of the energy is not accounted for; clamps "
-                         "take energy that no sum contains (boundary_work); finer cells, another method or detection of contact or a "
-                         "smaller time_step_factor may keep the rest");
+    if (const double part = ledger.energy_unaccounted; ledger.energy_warning_time < 0 && std::abs(part) > kOpenLedger)
+      warnings.push_back("the energy ledger does not close: " + brief(100 * part) + " % of the energy is not accounted for; finer "
+                         "cells, the method persistent, detection of contact by surface, the stress first or a smaller "
+                         "time_step_factor may keep it");
     output_.write_summary(world_.get(), {reason, threads_in_use(scene_.numerics), wall, warnings, start_cpu_seconds_,
                                          output_cpu_seconds_, cpu_after - start_cpu_seconds_ - output_cpu_seconds_});
 
@@ -198,15 +198,12 @@ class Simulation {
     std::printf("%s", output_.results_text(world_.get()).c_str());
     std::printf("results are in %s\n", directory_.c_str());
     std::fflush(stdout);
+    // All is written: the limits then decide whether it is a result.
+    if (ogive_world_check_energy(world_.get()) == OGIVE_ERROR_NUMERICAL)
+      throw Failure(kExitNumerical, std::string("the computation broke down: ") + ogive_world_message(world_.get()) +
+                                        "; it had come to its end, the results are in " + directory_.string());
     for (const std::string& warning : warnings) std::fprintf(stderr, "WARNING: %s\n", warning.c_str());
     return kExitOk;
-  }
-
-  /// Part of the energy that there was, that came in, or that there is as motion.
-  static double unaccounted(const ogive_ledger& ledger) {
-    const double there = std::max({std::abs(ledger.initial_total), std::abs(ledger.external_work), std::abs(ledger.prescribed_work),
-                                   ledger.kinetic});
-    return there > 0 ? ledger.residual / there : 0;
   }
 
   std::string energy_warning(const ogive_ledger& ledger) const {

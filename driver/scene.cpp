@@ -151,8 +151,8 @@ NumericsScene read_numerics(const Section& root) {
   NumericsScene numerics;
   const auto section = root.optional_table(
       "numerics", Names{"shape_function", "time_step_factor", "maximum_time_step", "threads", "gravity", "transfer",
-                        "update_order", "pic_fraction", "xpic_order", "energy_warning", "energy_limit", "drop_debris",
-                        "skip_resting"});
+                        "update_order", "pic_fraction", "xpic_order", "energy_warning", "energy_limit",
+                        "energy_loss_limit", "drop_debris", "skip_resting"});
   if (!section) return numerics;
   numerics.shape_function = section->optional_choice(
       "shape_function", {{"linear", OGIVE_SHAPE_LINEAR},
@@ -163,6 +163,7 @@ NumericsScene read_numerics(const Section& root) {
   numerics.maximum_time_step = section->optional_number("maximum_time_step", kPositive);
   numerics.energy_warning = section->optional_number("energy_warning", kPositive);
   numerics.energy_limit = section->optional_number("energy_limit", kPositive);
+  numerics.energy_loss_limit = section->optional_number("energy_loss_limit", kPositive);
   numerics.drop_debris = section->optional_flag("drop_debris");
   numerics.skip_resting = section->optional_flag("skip_resting");
   if (const auto threads = section->optional_integer("threads", 0, 1024)) {

@@ -39,7 +39,7 @@ struct NumericsScene {
   std::optional<int32_t> update_order;
   std::optional<double> pic_fraction;
   std::optional<int32_t> xpic_order;
-  std::optional<double> energy_warning, energy_limit;
+  std::optional<double> energy_warning, energy_limit, energy_loss_limit;
   std::optional<bool> drop_debris, skip_resting;
 
   bool operator==(const NumericsScene&) const = default;

@@ -30,7 +30,7 @@ constexpr ElementType element_type() {
 // Grows by one with each set of arrays that is added. 2: loads, forces of the host, sums over pairs. 3: the energy watch, surfaces,
 // total Lagrangian bodies. 4: dropped debris, the end of the energy exchange, groups at rest. 5: surfaces of total
 // Lagrangian bodies.
-constexpr std::int32_t save_version = 5;
+constexpr std::int32_t save_version = 6;
 
 class Archive {
  public:

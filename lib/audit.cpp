@@ -122,7 +122,7 @@ BodyAudit audit_body(const Model& model, const State& state, int index, int thre
 double total_energy(const Model& model, const State& state, int threads) {
   double total =
       state.ledger.friction_dissipation + state.ledger.transfer_dissipation + state.ledger.contact_dissipation -
-      state.ledger.external_work - state.ledger.prescribed_work;
+      state.ledger.external_work - state.ledger.prescribed_work - state.ledger.boundary_work;
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
     const BodyAudit audit = audit_body(model, state, b, threads);
     const BodyTotals& totals = state.bodies[b].totals;

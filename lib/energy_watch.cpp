@@ -1,4 +1,4 @@
-// Watches the ledger for energy that nothing gave.
+// Watches the ledger for energy that nothing gave or took.
 #include "energy_watch.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ double work_done(const State& state) {
 
 double growth_of(const Model& model, const State& state, double total) {
   const Ledger& ledger = state.ledger;
-  const double gained = total - ledger.initial_total - state.energy_watch.from_host;
+  const double gained = total - ledger.initial_total - state.energy_watch.from_host + std::max(ledger.boundary_work, 0.0);
   if (!std::isfinite(gained)) return std::numeric_limits<double>::infinity();
   double mass = 0;
   for (const BodyState& body : state.bodies)
@@ -54,6 +54,29 @@ std::string hottest_particle(const Model& model, const State& state) {
            std::to_string(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])) + " and V/V0 = " + std::to_string(body.volume_ratio[found]);
   }
   return text;
+}
+
+// What most likely loses energy that no term of the ledger has.
+std::string probable_loss(const Model& model, const State& state, double loss) {
+  const Numerics& numerics = model.numerics;
+  const double given = std::abs(state.ledger.initial_total) + work_done(state) + std::abs(state.energy_watch.from_host);
+  if (-state.ledger.contact_work > 0.3 * loss * given) {
+    const PairTotals* most = nullptr;
+    for (const PairTotals& pair : state.pairs)
+      if (!most || pair.contact_work < most->contact_work) most = &pair;
+    std::string where;
+    if (most && most->a >= 0 && most->b >= 0 && static_cast<std::size_t>(most->b) < model.bodies.size())
+      where = " between \"" + model.bodies[most->a].name + "\" and \"" + model.bodies[most->b].name + '"';
+    return "contact" + where + " takes the energy of whole cells at nodes: use finer cells (bodies should be four or more thick), the "
+           "method persistent, or detection by surface";
+  }
+  if (numerics.update_order == UpdateOrder::StressLastAsIs)
+    return "the update order stress_last_as_is keeps no energy at nodes with little mass: use stress_first or stress_last";
+  if (numerics.update_order == UpdateOrder::StressLast)
+    return "with the stress last waves that the cells hardly resolve lose energy: use a smaller time_step_factor (now " +
+           std::to_string(numerics.time_step_factor) + "), stress_first or finer cells";
+  return "motion that the cells do not resolve: use finer cells, or a smaller time_step_factor (now " +
+         std::to_string(numerics.time_step_factor) + ')';
 }
 
 // Largest angle by which a body as a whole turns in a step, from the mean of its affine velocities; 0 without them.
@@ -114,6 +137,24 @@ std::string probable_cause(const Model& model, const State& state) {
   return "the time step may be too long for what moves here: use a smaller time_step_factor (now " + factor + "), or finer cells";
 }
 
+void check_energy(const Model& model, const State& state, double growth) {
+  const Numerics& numerics = model.numerics;
+  const std::string when = "at time " + std::to_string(state.time) + ", step " + std::to_string(state.steps) + ", ";
+  const auto limit = [](const char* name, double value) {
+    return std::string(" (") + name + ": " + std::to_string(100 * value) + " %); ";
+  };
+  if (growth > numerics.energy_limit)
+    throw Error(ErrorKind::Numerical, when + "the energy has grown by " + std::to_string(100 * growth) +
+                                          " % of what there was and of the work done" +
+                                          limit("energy_limit", numerics.energy_limit) + hottest_particle(model, state) +
+                                          "; probable cause: " + probable_cause(model, state));
+  if (-growth > numerics.energy_loss_limit)
+    throw Error(ErrorKind::Numerical, when + std::to_string(-100 * growth) +
+                                          " % of the energy that there was and of the work done are lost, unaccounted for" +
+                                          limit("energy_loss_limit", numerics.energy_loss_limit) +
+                                          "probable cause: " + probable_loss(model, state, -growth));
+}
+
 bool watch_energy(const Model& model, State& state, int threads) {
   if (state.steps % energy_watch_steps != 0) return false;
   EnergyWatch& watch = state.energy_watch;
@@ -123,12 +164,7 @@ bool watch_energy(const Model& model, State& state, int threads) {
     watch.largest_growth = growth;
     watch.largest_growth_time = state.time;
   }
-  if (growth > model.numerics.energy_limit)
-    throw Error(ErrorKind::Numerical,
-                "at time " + std::to_string(state.time) + ", step " + std::to_string(state.steps) + ", the energy has grown by " +
-                    std::to_string(100 * growth) + " % of what there was and of the work done (energy_limit: " +
-                    std::to_string(100 * model.numerics.energy_limit) + " %); " + hottest_particle(model, state) +
-                    "; probable cause: " + probable_cause(model, state));
+  check_energy(model, state, growth);
   if (growth <= model.numerics.energy_warning || watch.warning_time >= 0) return false;
   watch.warning_time = state.time;
   return true;

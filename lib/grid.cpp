@@ -9,6 +9,7 @@
 
 #include "audit.hpp"
 #include "block_table.hpp"
+#include "boundary/held_nodes.hpp"
 #include "breakdown.hpp"
 #include "error.hpp"
 #include "parallel.hpp"
@@ -313,22 +314,6 @@ void find_face_nodes(const Model& model, Workspace& workspace, const BlockTable&
     }
 }
 
-// Calls visit(node) for each node in the space that carries the body, or any body if it is -1.
-template <class Visit>
-void for_nodes_in(const Model& model, const Workspace& workspace, const Space& space, int body, Visit&& visit) {
-  for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
-    const Slot& slot = workspace.slots[s];
-    if (slot.guided()) continue;  // what moves it also holds it
-    if (body >= 0 && slot.field != model.field_of(body)) continue;
-    for (int n = 0; n < workspace.nodes_in_use; ++n) {
-      Vector3 x;
-      for (int axis = 0; axis < 3; ++axis)
-        x[axis] = model.grid.domain_min[axis] + model.grid.cell_size * (4 * slot.block[axis] + ((n >> (2 * axis)) & 3));
-      if (space.contains(x)) visit(static_cast<std::int64_t>(s) * block_nodes + n);
-    }
-  }
-}
-
 // Whether a block's nodes are where a wall is felt: nearer than a shape function reaches, or behind it.
 bool at_wall(const Model& model, const std::array<std::int32_t, 3>& block) {
   const double h = model.grid.cell_size, reach = 1.5 * h;
@@ -341,20 +326,6 @@ bool at_wall(const Model& model, const std::array<std::int32_t, 3>& block) {
     if (distance < reach) return true;
   }
   return false;
-}
-
-void find_held_nodes(const Model& model, Workspace& workspace) {
-  workspace.clamps.clear();
-  for (const Clamp& clamp : model.clamps)
-    for_nodes_in(model, workspace, clamp, clamp.body,
-                 [&](std::int64_t node) { workspace.clamps.push_back({node, clamp.axes}); });
-  workspace.driven.clear();
-  for (std::size_t i = 0; i < model.loads.size(); ++i) {
-    const Load& load = model.loads[i];
-    if (load.kind != LoadKind::Velocity) continue;
-    for_nodes_in(model, workspace, load, load.body,
-                 [&](std::int64_t node) { workspace.driven.push_back({node, static_cast<std::int32_t>(i)}); });
-  }
 }
 
 KernelGroup describe_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link) {
@@ -715,8 +686,8 @@ std::int64_t Workspace::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
   std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(contact_stress) + bytes(occupied) +
                        bytes(filter) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
-                       bytes(clamps) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
-                       bytes(driven) + bytes(load_sums) + schedule.memory_bytes() + slot_parts.memory_bytes();
+                       bytes(held_nodes) + bytes(held_response) + bytes(held_slots) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
+                       bytes(load_sums) + schedule.memory_bytes() + slot_parts.memory_bytes();
   for (const BlockContacts& block : block_contacts) total += bytes(block.fields) + bytes(block.pairs) + bytes(block.nodes);
   for (const PlacedSurface& placed : surfaces)
     total += placed.surface.memory_bytes() + bytes(placed.vertex_ends) + bytes(placed.vertex_nodes) +

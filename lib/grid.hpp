@@ -117,9 +117,13 @@ struct FaceNodes {
   Vector3 plane_momentum{};  // of the moving nodes in the plane, before it was taken from them
 };
 
-struct ClampNode {
+// A node whose velocity is given along some axes (boundary/held_nodes.hpp).
+struct HeldNode {
   std::int64_t node = 0;
   std::int32_t axes = 0;
+  std::int32_t load = -1;           // the prescribed velocity; -1: a clamp
+  bool felt = false;                // particles take its change of velocity
+  Vector3 taken{}, impulse{};       // in this step: what was taken of its velocity at the beginning, and what holds it
 };
 
 // What a body's law makes of particles at rest (resting.hpp): they stay as they are, bit for bit, and the speed of waves.
@@ -138,11 +142,6 @@ struct Resting {
 };
 
 // A node whose velocity a load prescribes.
-struct DrivenNode {
-  std::int64_t node = 0;
-  std::int32_t load = 0;
-};
-
 // Everything that a step needs besides model and state; holds no information of its own between steps.
 struct Workspace {
   const KernelTable* kernels = nullptr;
@@ -162,8 +161,9 @@ struct Workspace {
   Parts slot_parts;                       // of the slots, near the pencils of the same thread
   std::vector<MixedBlock> mixed;
   std::vector<FaceNodes> faces;
-  std::vector<ClampNode> clamps;
-  std::vector<DrivenNode> driven;
+  std::vector<HeldNode> held_nodes;
+  std::vector<Vector3> held_response;     // by node, where particles feel any: momentum of their changes of velocity
+  std::vector<char> held_slots;           // then by slot: whether it has such a node whose velocity changes
   std::vector<KernelMaterial> materials;  // by body
   ContactNeeds contact_needs;
   Resting resting;

@@ -264,6 +264,7 @@ void Model::validate_numerics() const {
   require_choice("update_order", numerics.update_order, 3);
   require(numerics.energy_warning > 0, "energy_warning", "> 0", numerics.energy_warning);
   require(numerics.energy_limit > 0, "energy_limit", "> 0", numerics.energy_limit);
+  require(numerics.energy_loss_limit > 0, "energy_loss_limit", "> 0", numerics.energy_loss_limit);
 }
 
 bool Space::contains(const Vector3& x) const {
@@ -454,6 +455,7 @@ void Model::exchange(Archive& a) {
   }
   if (a.version() >= 4) a.value("model/numerics/drop_debris", numerics.drop_debris);
   if (a.version() >= 4) a.value("model/numerics/skip_resting", numerics.skip_resting);
+  if (a.version() >= 6) a.value("model/numerics/energy_loss_limit", numerics.energy_loss_limit);
 
   const auto count = [&](const char* name, auto& list, std::int32_t limit) {
     std::int32_t n = static_cast<std::int32_t>(list.size());

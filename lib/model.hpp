@@ -90,9 +90,9 @@ struct Numerics {
   double pic_fraction = 0;
   UpdateOrder update_order = UpdateOrder::StressFirst;
   std::int32_t xpic_order = 2;
-  double energy_warning = 0.01, energy_limit = 1.0;  // growth of the energy, see energy_watch.hpp
-  bool drop_debris = false;                          // see debris.hpp
-  bool skip_resting = true;                          // see resting.hpp
+  double energy_warning = 0.01, energy_limit = 1.0, energy_loss_limit = 1.0;  // see energy_watch.hpp
+  bool drop_debris = false;   // see debris.hpp
+  bool skip_resting = true;   // see resting.hpp
 
   bool affine() const { return transfer == Transfer::AffineFlip || transfer == Transfer::Apic; }
   bool stress_first() const { return update_order == UpdateOrder::StressFirst; }

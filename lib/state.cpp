@@ -229,6 +229,7 @@ void State::exchange(const Model& model, Archive& a) {
   a.value("state/ledger/transfer_dissipation", ledger.transfer_dissipation);
   a.value("state/ledger/contact_work", ledger.contact_work);
   a.value("state/ledger/boundary_work", ledger.boundary_work);
+  if (a.version() < 6) ledger.boundary_work = 0;  // was no term of the sum: what is lost by then stays in the residual
   a.value("state/ledger/external_work", ledger.external_work);
   a.value("state/ledger/boundary_impulse", ledger.boundary_impulse);
   a.value("state/ledger/external_impulse", ledger.external_impulse);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "boundary/boundary.hpp"
+#include "boundary/held_nodes.hpp"
 #include "breakdown.hpp"
 #include "contact/contact.hpp"
 #include "contact/occupied.hpp"
@@ -66,6 +67,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   fold_momentum(workspace);                                      // symmetry and fixed faces
   fold_contact_sums(workspace);
   nodal_velocities(workspace);                                   // (6)
+  hold_clamps(workspace);
   kick_lagrangian(model, state, workspace, dt);                  // total Lagrangian bodies
   begin_rigid_step(model, state, workspace, dt);
   set_rigid_velocities(model, workspace, false);
@@ -75,6 +77,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   if (contact) start_contact(model, state, workspace, dt,               // (23)-(25)
                              stress_first ? StartUse::MotionAndStrain : StartUse::Motion);
   if (stress_first) {
+    hold_velocities(state, workspace);                           // prescribed velocities
     unfold_velocity(workspace);
     update_stress(model, state, workspace, dt);                  // (29), (30), stress, (31)
   } else {
@@ -87,19 +90,20 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   accelerate_rigid(model, state, workspace, dt);
   set_rigid_velocities(model, workspace, true);
   set_lagrangian_trial(workspace);
+  if (stress_first) return_held_velocities(workspace);
   if (contact) return_start(workspace);                          // the jump of (25) belongs to the increment (34)
   hold_faces(state, workspace);
   map_contact_stress(model, state, workspace);
   if (contact) end_contact(model, state, workspace, dt);         // (12)-(22), (14)
-  apply_clamps(state, workspace);
+  hold_nodes(model, state, workspace, dt);                       // clamps, prescribed velocities
   hold_lagrangian(model, state, workspace, dt);                  // their impulses, faces, (3.19) of Lee et al.
-  apply_driven_velocities(model, state, workspace, dt);
   book_gravity(model, state, workspace, dt);
   unfold_motion(state, workspace);
   if (contact) book_kept_start(state, workspace);
   if (workspace.contact_needs.surface) move_surfaces(model, state, workspace, dt);
   if (xpic) filtered_velocities(workspace);
   book_grid_velocity(model, state, workspace);
+  book_held_work(model, state, workspace);
   accelerations(state, workspace, dt);
   measure_external_force(model, state, workspace, dt);
   update_velocity_and_position(model, state, workspace, dt);     // (34), (33)
@@ -112,6 +116,8 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
     set_rigid_velocities(model, workspace, false);
     set_lagrangian_velocities(workspace);
     if (contact) start_contact(model, state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
+    hold_clamps(workspace);
+    hold_velocities(state, workspace);
     unfold_velocity(workspace);
   }
   if (!stress_first) update_stress(model, state, workspace, dt); // (29), (30), stress; moves the particles (33)
@@ -206,6 +212,7 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
     for (int c = 0; c < 3; ++c) workspace.filter[i].v[c] = workspace.nodes[i].v[3] > 0 ? workspace.nodes[i].v[c] : 0;
     workspace.filter[i].v[3] = 0;
   });
+  hold_filter(workspace);
   unfold_filter(workspace);
   const auto pass = workspace.kernels->optional->filter_velocity[static_cast<int>(model.numerics.shape_function)];
   for (int r = 1; r < model.numerics.xpic_order; ++r) {
@@ -225,10 +232,11 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
         filter.f[c] = 0;
       }
     });
+    hold_filter(workspace);
     unfold_filter(workspace);
   }
   workspace.filter_momentum = {};
-  if (workspace.faces.empty()) return;
+  if (workspace.faces.empty() && workspace.held_nodes.empty()) return;
   for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
     if (workspace.slots[s].guided()) continue;
     for (std::size_t i = s * block_nodes; i < s * block_nodes + static_cast<std::size_t>(workspace.nodes_in_use); ++i)

@@ -37,6 +37,7 @@ module ogive
     procedure :: advance
     procedure :: progress
     procedure :: ledger
+    procedure :: check_energy
     procedure :: find_body
     procedure :: body_result
     procedure :: pair_result
@@ -115,11 +116,11 @@ contains
 
   subroutine set_numerics(self, shape_function, time_step_factor, maximum_time_step, threads, gravity, transfer, &
                           update_order, pic_fraction, xpic_order, drop_debris, skip_resting, energy_warning, &
-                          energy_limit, status)
+                          energy_limit, energy_loss_limit, status)
     class(ogive_simulation), intent(inout) :: self
     integer(c_int32_t), intent(in), optional :: shape_function, threads, transfer, update_order, xpic_order
     real(c_double), intent(in), optional :: time_step_factor, maximum_time_step, gravity(3), pic_fraction
-    real(c_double), intent(in), optional :: energy_warning, energy_limit
+    real(c_double), intent(in), optional :: energy_warning, energy_limit, energy_loss_limit
     logical, intent(in), optional :: drop_debris, skip_resting
     integer(c_int32_t), intent(out), optional :: status
     type(ogive_numerics_def) :: def
@@ -137,6 +138,7 @@ contains
     if (present(skip_resting)) def%skip_resting = merge(1_c_int32_t, 0_c_int32_t, skip_resting)
     if (present(energy_warning)) def%energy_warning = energy_warning
     if (present(energy_limit)) def%energy_limit = energy_limit
+    if (present(energy_loss_limit)) def%energy_loss_limit = energy_loss_limit
     self%status = ogive_world_set_numerics(self%world, def)
     if (present(status)) status = self%status
   end subroutine set_numerics
@@ -457,6 +459,13 @@ contains
     found%struct_size = int(c_sizeof(found), c_int32_t)
     self%status = ogive_world_ledger(self%world, found)
   end function ledger
+
+  subroutine check_energy(self, status)
+    class(ogive_simulation), intent(inout) :: self
+    integer(c_int32_t), intent(out), optional :: status
+    self%status = ogive_world_check_energy(self%world)
+    if (present(status)) status = self%status
+  end subroutine check_energy
 
   function find_body(self, name) result(body)
     class(ogive_simulation), intent(inout) :: self

@@ -133,6 +133,7 @@ module ogive_c
     real(c_double) :: energy_limit
     integer(c_int32_t) :: drop_debris
     integer(c_int32_t) :: skip_resting
+    real(c_double) :: energy_loss_limit
   end type ogive_numerics_def
 
   type, bind(C) :: ogive_clamp_def
@@ -299,6 +300,7 @@ module ogive_c
     real(c_double) :: dropped_momentum(3)
     real(c_double) :: dropped_angular_momentum(3)
     real(c_double) :: dropped_energy
+    real(c_double) :: energy_unaccounted
   end type ogive_ledger
 
   type, bind(C) :: ogive_body_result
@@ -717,6 +719,12 @@ module ogive_c
       type(c_ptr), value :: world
       type(ogive_ledger), intent(inout) :: ledger
       integer(c_int32_t) :: ogive_world_ledger
+    end function
+    function ogive_world_check_energy(world) bind(C)
+      import
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int32_t) :: ogive_world_check_energy
     end function
     function ogive_body_count(world) bind(C)
       import

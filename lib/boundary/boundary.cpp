@@ -1,4 +1,4 @@
-// Mirror faces and clamps.
+// Mirror faces.
 #include "boundary/boundary.hpp"
 
 #include "contact/occupied.hpp"
@@ -192,7 +192,7 @@ void unfold_motion(State& state, Workspace& workspace) {
 void book_grid_velocity(const Model& model, State& state, const Workspace& workspace) {
   const bool xpic = model.numerics.transfer == Transfer::Xpic;
   const double part = xpic ? 1.0 : model.numerics.grid_velocity_fraction();
-  if (part == 0 || workspace.faces.empty()) return;
+  if (part == 0) return;
   Vector3& impulse = state.ledger.boundary_impulse;
   const AlignedVector<NodeRecord>& velocity = xpic ? workspace.filter : workspace.nodes;
   for (const FaceNodes& face : workspace.faces)
@@ -207,16 +207,13 @@ void book_grid_velocity(const Model& model, State& state, const Workspace& works
   if (xpic) add(impulse, workspace.filter_momentum);
 }
 
-void apply_clamps(State& state, Workspace& workspace) {
-  for (const ClampNode& clamp : workspace.clamps) {
-    NodeRecord& record = workspace.nodes[clamp.node];
-    for (int c = 0; c < 3; ++c)
-      if (clamp.axes >> c & 1) {
-        state.ledger.boundary_impulse[c] -= record.v[3] * record.f[c];
-        state.ledger.boundary_work -= 0.5 * record.v[3] * record.f[c] * record.f[c];
-        record.f[c] = 0;
-      }
-  }
+void fold_vectors(const Workspace& workspace, std::vector<Vector3>& sums) {
+  for (const FaceNodes& face : workspace.faces)
+    for (std::size_t i = 0; i < face.moving_pairs; ++i) {
+      Vector3 &ghost = sums[face.pairs[i].ghost], &image = sums[face.pairs[i].image];
+      for (int c = 0; c < 3; ++c) image[c] += mirror_sign(face, c) * ghost[c];
+      ghost = {};
+    }
 }
 
 }  // namespace ogive

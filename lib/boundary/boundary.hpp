@@ -1,4 +1,4 @@
-// Symmetry and fixed faces as mirrors, and clamps.
+// Symmetry and fixed faces as mirrors.
 //
 // At a symmetry face the material beyond is the mirror image of what is modelled, moving as the image moves. What the
 // particles give to a node beyond the face (a ghost) is therefore what the image would give to the mirrored node inside:
@@ -32,7 +32,7 @@ void unfold_motion(State& state, Workspace& workspace);
 // Where particles take the grid's own velocity, or a part of it (APIC, PIC, XPIC), they take the mirrors' share in it too: what
 // nodes in the plane lost and ghosts turned round when momentum was folded. Books it. After unfold_motion.
 void book_grid_velocity(const Model& model, State& state, const Workspace& workspace);
-// Holds clamped nodes (same records): the final velocity is zero, and so the acceleration that particles see is -v / dt.
-void apply_clamps(State& state, Workspace& workspace);
+// Folds a sum by nodes, of vectors that turn as velocities do.
+void fold_vectors(const Workspace& workspace, std::vector<Vector3>& sums);
 
 }  // namespace ogive

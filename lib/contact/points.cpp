@@ -422,7 +422,7 @@ void book(State& state, Workspace& workspace, const Phase& phase, bool at_end, d
       if (!reaches) {
         const Vector3 seen = times(grid_part, own), unseen = times(1 - grid_part, own);
         if (side->body < 0) add(state.ledger.boundary_impulse, times(-1, seen));
-        if (side->lagrangian) book_faces(state, workspace, *side, seen);
+        book_faces(state, workspace, *side, seen);
         if (side->rigid < 0) continue;
         RigidMotion& body = workspace.rigid[side->rigid];
         add(body.impulse, seen);

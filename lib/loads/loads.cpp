@@ -1,4 +1,4 @@
-// Loads on particles and driven nodes.
+// Loads on particles.
 #include "loads/loads.hpp"
 
 #include "shape/scalar_weights.hpp"
@@ -173,25 +173,6 @@ void load_rigid(const Model& model, State& state, RigidMotion& motion, double dt
     add(load.force, times(1 / dt, impulse));
     add(load.impulse, impulse);
     load.work += work;
-  }
-}
-
-void apply_driven_velocities(const Model& model, State& state, Workspace& workspace, double dt) {
-  for (const DrivenNode& driven : workspace.driven) {
-    NodeRecord& node = workspace.nodes[driven.node];
-    if (!(node.v[3] > 0)) continue;
-    LoadState& load = state.loads[driven.load];
-    for (int c = 0; c < 3; ++c) {
-      if (!(model.loads[driven.load].axes >> c & 1)) continue;
-      const double impulse = node.v[3] * (load.value[c] - node.f[c]);
-      const double work = 0.5 * impulse * (node.v[c] + load.value[c]);
-      node.f[c] = load.value[c];
-      load.force[c] += impulse / dt;
-      load.impulse[c] += impulse;
-      load.work += work;
-      state.ledger.external_impulse[c] += impulse;
-      state.ledger.external_work += work;
-    }
   }
 }
 

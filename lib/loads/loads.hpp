@@ -6,7 +6,7 @@
 // Nodes get f_I = sum_p N_I(x_p) f_p, as they get the internal force, so that momentum is exact. The work in a step is
 //   dt sum_p f_p . V(x_p),  V_I = (v_I + v_I') / 2,
 // v_I and v_I' being the nodal velocities at its beginning and end: the part of the external forces in the change of the
-// grid's kinetic energy. Likewise a prescribed velocity w takes the node's impulse J = m_I (w - v_I') and does work J . V_I.
+// grid's kinetic energy. Prescribed velocities hold nodes: boundary/held_nodes.hpp.
 #pragma once
 
 #include "grid.hpp"
@@ -28,9 +28,6 @@ void map_loads(const Model& model, const State& state, Workspace& workspace, std
 // The same for a rigid body that is free: the loads' sum and their moment about the centre push it as a whole, with the
 // work of the mean of its motion before and after. A body of prescribed motion does not feel them, and nothing is booked.
 void load_rigid(const Model& model, State& state, RigidMotion& motion, double dt);
-
-// Holds driven nodes. Node records hold {velocity at the beginning, mass | velocity at the end}.
-void apply_driven_velocities(const Model& model, State& state, Workspace& workspace, double dt);
 
 // Work and impulse of the loads on the particles of a group; node records hold {velocity at the end, 0 | acceleration, 0}.
 void measure_loads(const Model& model, const State& state, Workspace& workspace, std::int32_t link, double dt);

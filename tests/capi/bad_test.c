@@ -52,6 +52,7 @@ static void null_worlds(void) {
   CHECK(ogive_world_advance(NULL, 1, 0, NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_progress(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_world_ledger(NULL, NULL) == OGIVE_ERROR_ARGUMENT);
+  CHECK(ogive_world_check_energy(NULL) == OGIVE_ERROR_ARGUMENT);
   CHECK(ogive_body_count(NULL) == 0);
   CHECK(ogive_body_name(NULL, none) == NULL);
   CHECK(ogive_body_find(NULL, "b", &body) == OGIVE_ERROR_ARGUMENT);
@@ -159,6 +160,7 @@ static void definitions(void) {
   WITH(numerics, maximum_time_step, 0, ogive_world_set_numerics(world, &numerics), "maximum_time_step");
   WITH(numerics, energy_warning, 0, ogive_world_set_numerics(world, &numerics), "energy_warning");
   WITH(numerics, energy_limit, NAN, ogive_world_set_numerics(world, &numerics), "energy_limit");
+  WITH(numerics, energy_loss_limit, 0, ogive_world_set_numerics(world, &numerics), "energy_loss_limit");
   WITH(numerics, drop_debris, 2, ogive_world_set_numerics(world, &numerics), "drop_debris");
   WITH(numerics, skip_resting, 2, ogive_world_set_numerics(world, &numerics), "skip_resting");
   WITH(numerics, gravity[0], NAN, ogive_world_set_numerics(world, &numerics), "gravity");
@@ -328,6 +330,7 @@ static void before_it_is_prepared(void) {
   CHECK_ORDER(world, ogive_world_advance(world, 1, 0, NULL, NULL), "prepare");
   CHECK_ORDER(world, ogive_world_progress(world, &progress), "prepare");
   CHECK_ORDER(world, ogive_world_ledger(world, &ledger), "prepare");
+  CHECK_ORDER(world, ogive_world_check_energy(world), "prepare");
   CHECK_ORDER(world, ogive_body_result_get(world, small.left, &result), "prepare");
   CHECK_ORDER(world, ogive_pair_result_get(world, small.left, small.right, &pair), "prepare");
   CHECK_ORDER(world, ogive_load_result_get(world, small.load, &load), "prepare");

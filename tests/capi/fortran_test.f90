@@ -52,6 +52,8 @@ program fortran_test
   call check(a%status == OGIVE_ERROR_ARGUMENT .and. index(a%message(), "energy_warning") > 0, "a warning below 0")
   call a%set_numerics(skip_resting=.false., energy_limit=0.0_c_double)
   call check(a%status == OGIVE_ERROR_ARGUMENT .and. index(a%message(), "energy_limit") > 0, "a limit of 0")
+  call a%set_numerics(energy_loss_limit=-1.0_c_double)
+  call check(a%status == OGIVE_ERROR_ARGUMENT .and. index(a%message(), "energy_loss_limit") > 0, "a limit below 0")
   call a%set_numerics(time_step_factor=0.4_c_double, threads=1, gravity=[0.0_c_double, 0.0_c_double, -1.0_c_double], &
                        drop_debris=.true.)
   call a%set_contact(friction=0.1_c_double)

@@ -160,6 +160,7 @@ static void results_agree_with_each_other(small_world* small) {
   CHECK_OK(world, ogive_body_find(world, "right", &found));
   CHECK(found.index == small->right.index);
   CHECK_OK(world, ogive_world_ledger(world, &ledger));
+  CHECK_OK(world, ogive_world_check_energy(world));
   CHECK_OK(world, ogive_body_result_get(world, small->left, &left));
   CHECK_OK(world, ogive_body_result_get(world, small->right, &right));
   CHECK_OK(world, ogive_pair_result_get(world, small->left, small->right, &pair));

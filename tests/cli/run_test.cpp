@@ -242,6 +242,20 @@ TEST(Run, growing_energy_is_said_loudly_and_stops_the_run_above_the_limit) {
   EXPECT_TRUE(summary.at("energy").at("warning_time").is_number());
 }
 
+TEST(Run, that_ends_with_more_energy_lost_than_its_limit_is_no_result) {
+  const ScratchDirectory scratch;
+  const std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "contact.detection=shared_node",
+                                            "--set", "numerics.energy_loss_limit=1e-12", "--set", "stop.max_steps=24"};
+  const Outcome stopped = run_program(scratch.path(), command);
+  EXPECT_EQ(stopped.exit_code, 3) << stopped.errors;
+  EXPECT_EQ(count_of(stopped.errors, "\n"), 1U) << stopped.errors;
+  for (const char* part : {"the computation broke down: at time ", "step 24, ", "lost, unaccounted for (energy_loss_limit: ",
+                           "probable cause: ", "it had come to its end, the results are in results"})
+    EXPECT_NE(stopped.errors.find(part), std::string::npos) << part << "\nis not in\n" << stopped.errors;
+  const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
+  EXPECT_LT(summary.at("energy").at("unaccounted"), -1e-12);
+}
+
 /// Crushed between rigid walls at Mach 13, with a law that knows no shocks.
 std::vector<std::string> breaking_run() {
   std::vector<std::string> command = {"run", scene_file(), "-o", "results", "--set", "parameters.V0=5000"};

@@ -201,6 +201,7 @@ TEST_P(Conservation, AClampHoldsWhatItHoldsAndItsImpulseIsBooked) {
   measured("momentum_miss", momentum_miss(before, scene.ledger()) / scale);
   measured("energy_residual_over_work", scene.ledger().residual / scene.ledger().external_work);
   EXPECT_EQ(held, 0);
+  EXPECT_LE(std::abs(scene.ledger().residual), 0.02 * scene.ledger().external_work);
   EXPECT_GT(free, 0.02);
   EXPECT_GT(scene.ledger().boundary_impulse[2], 0.1 * scale);
   EXPECT_LE(momentum_miss(before, scene.ledger()), 1e-11 * scale);

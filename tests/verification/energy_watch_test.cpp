@@ -57,6 +57,53 @@ TEST(EnergyWatch, WithoutALimitTheRunGoesOnAndTheLedgerStillTells) {
   EXPECT_EQ(scene.ledger().energy_warning_time, -1);
 }
 
+namespace {
+
+/// Two blocks of two cells strike each other; contact at nodes takes a part of their energy that no term has.
+void add_lossy_impact(Scene& scene, double loss_limit) {
+  scene.grid(1, {-8, -8, -8}, {8, 8, 8});
+  ogive_numerics_def numerics;
+  ogive_numerics_def_init(&numerics, sizeof numerics);
+  numerics.energy_loss_limit = loss_limit;
+  scene.check(ogive_world_set_numerics(scene.get(), &numerics));
+  scene.contact(OGIVE_CONTACT_BARDENHAGEN_2000, OGIVE_DETECTION_SHARED_NODE);
+  const ogive_material_id material = scene.material("soft", elastic(2.7e-3, 690, 0.3));
+  scene.box("left", material, {-3, -1, -1}, {-1, 1, 1}, 0.5, {20, 0, 0});
+  scene.box("right", material, {1, -1, -1}, {3, 1, 1}, 0.5, {-20, 0, 0});
+  scene.prepare();
+}
+
+}  // namespace
+
+TEST(EnergyWatch, LostEnergyStopsARunThatIsToKeepIt) {
+  Scene scene;
+  add_lossy_impact(scene, 0.02);
+  EXPECT_EQ(ogive_world_check_energy(scene.get()), OGIVE_OK);
+  EXPECT_EQ(ogive_world_advance(scene.get(), 0.3, 0, nullptr, nullptr), OGIVE_ERROR_NUMERICAL);
+  const std::string message = ogive_world_message(scene.get());
+  for (const char* part : {"at time ", " % of the energy that there was", "lost, unaccounted for (energy_loss_limit: 2", "probable cause: contact between",
+                           "\"left\"", "\"right\""})
+    EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
+}
+
+TEST(EnergyWatch, TheLedgerTellsALossAndTheCheckLooksBetweenSteps) {
+  Scene scene;
+  add_lossy_impact(scene, 1);
+  scene.advance(0.3);
+  const double lost = scene.ledger().energy_unaccounted;
+  measured("lost", lost);
+  EXPECT_LT(lost, -0.03);
+  EXPECT_NEAR(lost, scene.ledger().residual_relative, 1e-12);
+  EXPECT_EQ(ogive_world_check_energy(scene.get()), OGIVE_OK);
+
+  // Steps look at every 25th alone; the check looks when it is asked.
+  Scene strict;
+  add_lossy_impact(strict, 1e-9);
+  strict.steps(20);
+  EXPECT_EQ(ogive_world_check_energy(strict.get()), OGIVE_ERROR_NUMERICAL);
+  EXPECT_EQ(ogive_world_step(strict.get(), 0), OGIVE_OK) << "the check changed the world";
+}
+
 TEST(EnergyWatch, LimitsOutOfRangeAreNamed) {
   for (const double wrong : {0.0, -1.0, std::nan("")}) {
     Scene scene;
@@ -66,6 +113,10 @@ TEST(EnergyWatch, LimitsOutOfRangeAreNamed) {
     EXPECT_EQ(ogive_world_set_numerics(scene.get(), &numerics), OGIVE_ERROR_ARGUMENT);
     EXPECT_NE(std::string(ogive_world_message(scene.get())).find("energy_limit"), std::string::npos);
     numerics.energy_limit = 1;
+    numerics.energy_loss_limit = wrong;
+    EXPECT_EQ(ogive_world_set_numerics(scene.get(), &numerics), OGIVE_ERROR_ARGUMENT);
+    EXPECT_NE(std::string(ogive_world_message(scene.get())).find("energy_loss_limit"), std::string::npos);
+    numerics.energy_loss_limit = 1;
     numerics.energy_warning = wrong;
     EXPECT_EQ(ogive_world_set_numerics(scene.get(), &numerics), OGIVE_ERROR_ARGUMENT);
     EXPECT_NE(std::string(ogive_world_message(scene.get())).find("energy_warning"), std::string::npos);

@@ -287,6 +287,28 @@ TEST(SurfaceContact, OfAnElasticBlockAndAWallTurnsItBack) {
       }
 }
 
+// What the first phase keeps from particles, those that take the grid's velocity see: the mirror's share of it is booked too.
+TEST(SurfaceContact, BesideAMirrorKeepsMomentumWhateverParticlesTakeOfTheGrid) {
+  for (const std::int32_t shape : {OGIVE_SHAPE_LINEAR, OGIVE_SHAPE_QUADRATIC_BSPLINE})
+    for (const std::int32_t transfer : {OGIVE_TRANSFER_APIC, OGIVE_TRANSFER_XPIC, OGIVE_TRANSFER_AFFINE_FLIP})
+      for (const std::int32_t method : {OGIVE_CONTACT_PERSISTENT, OGIVE_CONTACT_YORK, OGIVE_CONTACT_HUANG_SECOND}) {
+        Scene scene;
+        scene.grid(1, {-8, -8, 0}, {8, 8, 10}, {0, 0, 0, 0, OGIVE_FACE_SYMMETRY, 0}).numerics(shape, 0.3, {}, 1, transfer)
+            .contact(method, by_surface, 0.2);
+        const ogive_material_id metal = scene.material("metal", elastic(2.7e-3, 7e3, 0.3));
+        const ogive_body_id block = scene.box("block", metal, {-2, -2, 1.02}, {2, 2, 3.02}, 0.5, {4, 0, -20});
+        scene.box("plate", metal, {-4, -4, 0}, {4, 4, 1}, 0.5, {0, 0, 0});
+        set_box_surface(scene, block, {-2, -2, 1.02}, {2, 2, 3.02}, 8);
+        scene.prepare();
+        const ogive_ledger before = scene.ledger();
+        scene.steps(80);
+        const double miss = momentum_miss(before, scene.ledger()) / (before.mass * 20);
+        measured("momentum_miss", miss);  // 1e-14; 0.01 to 0.05 were missing where the mirror's share was not booked
+        EXPECT_LT(miss, 1e-12);
+        EXPECT_GT(scene.ledger().momentum[2], before.momentum[2] + 0.1 * before.mass);
+      }
+}
+
 TEST(SurfaceContact, OfAHalfModelIsThatOfTheWholeOne) {
   for (const std::int32_t method : {OGIVE_CONTACT_HUANG_FIRST, OGIVE_CONTACT_HUANG_SECOND}) {
     Scene whole = many(false, 1, method), half = many(true, 1, method);
