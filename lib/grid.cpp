@@ -11,6 +11,7 @@
 #include "block_table.hpp"
 #include "boundary/held_nodes.hpp"
 #include "breakdown.hpp"
+#include "contact/points.hpp"
 #include "error.hpp"
 #include "parallel.hpp"
 
@@ -328,6 +329,22 @@ bool at_wall(const Model& model, const std::array<std::int32_t, 3>& block) {
   return false;
 }
 
+// Whether contact is looked for at the nodes of a block with these slots: not where all that may meet there meets at points.
+bool asks_for_nodes(const Model& model, const Workspace& workspace, std::int32_t first, std::int32_t end) {
+  const bool wall = at_wall(model, workspace.slots[first].block);
+  if (end - first < 2 && !wall) return false;
+  if (!model.own_fields && model.bodies.size() > 1) return true;
+  for (std::int32_t a = first; a < end; ++a) {
+    const std::int32_t body = workspace.slots[a].field;
+    for (std::int32_t b = a + 1; b < end; ++b)
+      if (!met_at_points(model, body, workspace.slots[b].field)) return true;
+    if (!wall) continue;
+    for (std::int32_t w = 0; w < static_cast<std::int32_t>(model.walls.size()); ++w)
+      if (!met_at_points(model, body, -1 - w)) return true;
+  }
+  return false;
+}
+
 KernelGroup describe_group(const Model& model, const State& state, Workspace& workspace, const GroupLinks& link) {
   const Group& group = workspace.particles_of(state, link.body).groups[link.group];
   const Grid& grid = model.grid;
@@ -551,7 +568,7 @@ void link_grid(const Model& model, const State& state, Workspace& workspace) {
   for (std::int32_t s = 0, n = static_cast<std::int32_t>(workspace.slots.size()); s < n;) {
     std::int32_t end = s + 1;
     while (end < n && workspace.slots[end].block == workspace.slots[s].block) ++end;
-    if (!workspace.is_reference && (end - s > 1 || at_wall(model, workspace.slots[s].block))) {
+    if (!workspace.is_reference && asks_for_nodes(model, workspace, s, end)) {
       workspace.mixed.push_back({s, end - s});
       for (std::int32_t i = s; i < end; ++i) workspace.slots[i].contact = contacts++;
     }

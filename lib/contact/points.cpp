@@ -15,6 +15,7 @@
 #include "contact/points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -23,6 +24,8 @@
 #include "contact/method.hpp"
 #include "contact/stencil.hpp"
 #include "grid.hpp"
+#define OGIVE_ISA_NAMESPACE scalar
+#include "simd/lanes.hpp"
 #include "simd/subnormals.hpp"
 #include "surface/meeting.hpp"
 
@@ -33,9 +36,39 @@ constexpr double look_ahead = 0.1;  // cells: gaps up to here are watched; a par
 constexpr double deepest = 0.5;     // cells: deeper inside than this and half its size a particle is not found
 constexpr std::size_t vertices_at_once = 512;
 constexpr int most_passes = 100;
-constexpr double pass_tolerance = 1e-5;  // of the relative velocity
+constexpr double pass_tolerance = 1e-3;  // of the relative velocity
 
 // ------------------------------------------------------------------------------------------------------------- finding
+
+// A group's box in eighths, for a first look.
+class Eighths {
+ public:
+  explicit Eighths(const KernelGroup& group) {
+    for (int c = 0; c < 3; ++c) {
+      lower_[c] = group.bound_low[c];
+      upper_[c] = group.bound_high[c];
+      half_[c] = 0.5 * (upper_[c] - lower_[c]);
+    }
+  }
+  // -1: outside.
+  int of(const Vector3& x) const {
+    int index = 0;
+    for (int c = 0; c < 3; ++c) {
+      if (!(x[c] >= lower_[c] && x[c] <= upper_[c])) return -1;
+      index |= (x[c] >= lower_[c] + half_[c]) << c;
+    }
+    return index;
+  }
+  Vector3 middle(int index) const {
+    Vector3 x;
+    for (int c = 0; c < 3; ++c) x[c] = lower_[c] + half_[c] * (0.5 + (index >> c & 1));
+    return x;
+  }
+  double radius() const { return 0.5 * length(half_); }  // from the middle to a corner
+
+ private:
+  Vector3 lower_, upper_, half_;
+};
 
 // Points of one group's particles, without stencils.
 class Feeler {
@@ -127,19 +160,48 @@ class Feeler {
       SurfacePoint found;
       if (!nearest_of_owner(model_, workspace_, owner, middle, 0.5 * length(across) + reach, found, &hint)) return;
     }
+    const Eighths eighths(group);
+    std::array<SurfacePoint, 8> from_middle;
+    std::array<signed char, 8> looked{};  // 1: from_middle is known, -1: nothing is near
+    Vector3 last{};
+    double last_distance = -std::numeric_limits<double>::infinity();  // what is known of the particle before, at `last`
+    double mass = -1, largest_half = 0;
     const BodyState& body = workspace_.particles_of(state_, link.body);
     const double inverse_density = 1.0 / model_.material_of(link.body).density;
     for (std::int64_t p = group.begin; p < group.begin + body.groups[link.group].count; ++p) {
       const double* r = &body.position[4 * p];
       const Vector3 x = {r[0], r[1], r[2]};
-      double volume = r[3] * inverse_density * std::min(body.volume_ratio[p], 1.0);
+      if (r[3] != mass) {
+        mass = r[3];
+        largest_half = 0.5 * std::cbrt(mass * inverse_density);
+      }
       Vector3 on_face{};
       inside_faces(x, on_face);
+      double sharing = 1;  // half of a particle that the face cuts
       for (const double on : on_face)
-        if (on != 0) volume *= 2;  // half of a particle that the face cuts
-      const double half = 0.5 * std::cbrt(volume);
+        if (on != 0) sharing *= 2;
+      // The distance changes by no more than the way: most particles are told by another's, or by that of the middle of their eighth,
+      // to be too far outside.
+      const double too_far = sharing * largest_half + ahead_;
+      double at_least = last_distance - length(minus(x, last));
+      if (at_least > too_far) continue;
+      if (const int e = owner < 0 ? -1 : eighths.of(x); e >= 0) {
+        if (looked[e] == 0)
+          looked[e] = nearest_of_owner(model_, workspace_, owner, eighths.middle(e), eighths.radius() + (0.5 + deepest) * h,
+                                       from_middle[e], &hint) ? 1 : -1;
+        if (looked[e] < 0) continue;
+        at_least = std::max(at_least, from_middle[e].distance - length(minus(x, eighths.middle(e))));
+        if (at_least > too_far) continue;
+      }
+      const double half = 0.5 * std::cbrt(sharing * mass * inverse_density * std::min(body.volume_ratio[p], 1.0));
+      // Farther away than what is watched, it is outside, unless it may be deep inside.
       SurfacePoint found;
-      if (!nearest_of_owner(model_, workspace_, owner, x, half + deepest * h, found, &hint)) continue;
+      const double watched = half + ahead_;
+      if (!nearest_of_owner(model_, workspace_, owner, x, watched, found, &hint)) {
+        if (at_least >= -watched || !nearest_of_owner(model_, workspace_, owner, x, half + deepest * h, found, &hint)) continue;
+      }
+      last = x;
+      last_distance = found.distance;
       const std::int64_t particle = state_.bodies[link.body].lagrangian ? body.number[p] : p;
       offer(link.body, owner, x, found, found.distance - half, on_face, particle, -1, points);
     }
@@ -187,6 +249,16 @@ NodeRecord& node_record(Workspace& workspace, std::int32_t node) {
                                             : workspace.nodes[node];
 }
 
+// {-1, 0, 1} for x, y and z, and 1 for the mass beside: 9 x + 3 y + z, each from 0.
+struct Signs {
+  alignas(32) double of[27][4];
+  constexpr Signs() : of() {
+    for (int i = 0; i < 27; ++i)
+      for (int c = 0; c < 4; ++c) of[i][c] = c == 0 ? i / 9 - 1 : c == 1 ? i / 3 % 3 - 1 : c == 2 ? i % 3 - 1 : 1;
+  }
+};
+constexpr Signs signs{};
+
 // One phase: on the mapped velocities, or on the trial velocities.
 class Phase {
  public:
@@ -205,30 +277,40 @@ class Phase {
     find_mobilities(acting);
     if (!at_end_)
       for (ContactPoint* point : acting) remember(point->a), remember(point->b);
+    gather(acting);
     double pace = 1;  // of the acceleration
     for (int pass = 0; pass < most_passes; ++pass) {
       double worst = 0, uphill = 0;
-      for (ContactPoint* point : acting) {
-        const Vector3 slope = minus(relative(*point), times(point->constraint.target, point->normal));
-        const Vector3 next = allowed(*point, minus(point->ahead, times(1 / point->mobility, slope)));
-        point->change = minus(next, point->impulse);
-        uphill += point->mobility * dot(minus(point->ahead, next), point->change);
-        worst = std::max(worst, point->mobility * length(point->change));
-        point->impulse = next;
+      for (Row& row : rows_) {
+        const Vector3 approach = minus(velocity(row.a), velocity(row.b));
+        const Vector3 slope = minus(approach, times(row.target, row.normal));
+        const Vector3 next = allowed(row, minus(row.ahead, times(row.inverse_mobility, slope)));
+        const Vector3 step = minus(next, row.ahead);
+        row.change = minus(next, row.impulse);
+        uphill -= row.mobility * dot(step, row.change);
+        // What the velocities still ask for. (`change` has the pace too, which goes on where impulses move and no velocity does.)
+        worst = std::max(worst, row.mobility * row.mobility * dot(step, step));
+        row.impulse = next;
       }
-      const bool done = worst <= pass_tolerance * scale || pass + 1 == most_passes;
+      const bool done = worst <= pass_tolerance * pass_tolerance * scale * scale || pass + 1 == most_passes;
       const double next_pace = uphill > 0 ? 1 : 0.5 * (1 + std::sqrt(1 + 4 * pace * pace));
       const double part = done || uphill > 0 ? 0 : (pace - 1) / next_pace;
       pace = next_pace;
-      for (ContactPoint* point : acting) {
-        const Vector3 ahead = plus(point->impulse, times(part, point->change));
-        const Vector3 more = minus(ahead, point->ahead);
-        point->ahead = ahead;
+      for (Row& row : rows_) {
+        const Vector3 ahead = plus(row.impulse, times(part, row.change));
+        const Vector3 more = minus(ahead, row.ahead);
+        row.ahead = ahead;
         if (more == Vector3{}) continue;
-        give(point->a, more);
-        give(point->b, times(-1, more));
+        give(row.a, more);
+        give(row.b, times(-1, more));
       }
       if (done) break;
+    }
+    for (std::size_t i = 0; i < acting.size(); ++i) acting[i]->impulse = rows_[i].impulse;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      double* const v = velocity_record(node_of_[i]);
+      for (int c = 0; c < 3; ++c) v[c] = nodes_[i].v[c];
+      workspace_.points.place[node_of_[i]] = 0;
     }
   }
 
@@ -270,7 +352,87 @@ class Phase {
   }
 
  private:
-  void give(const PointSide& side, Vector3 impulse) {
+  // What the passes read and write, over and over: close together. Weights differ by component in sign alone.
+  struct alignas(32) Node {
+    double v[3], inverse_mass;
+  };
+  struct Entry {
+    double share;
+    std::int32_t node, signs;  // of nodes_; of `signs`
+  };
+  struct Side {
+    std::int32_t first = 0, count = 0;  // in entries_
+    std::int32_t rigid = -1;
+    bool fixed = false;
+    Vector3 at{};
+  };
+  struct Row {
+    Side a, b;
+    Vector3 normal{};
+    double target = 0, mobility = 0, inverse_mobility = 0, friction = 0, start_push = 0;
+    Hold hold = Hold::Nothing;
+    Vector3 impulse{}, ahead{}, change{};  // on a; the impulse that the velocities have now, and the last change of `impulse`
+  };
+
+  void gather(const std::vector<ContactPoint*>& acting) {
+    rows_.clear();
+    entries_.clear();
+    nodes_.clear();
+    node_of_.clear();
+    const auto side_of = [&](const PointSide& side) {
+      Side own;
+      own.rigid = side.rigid;
+      own.fixed = side.fixed;
+      own.at = side.at;
+      own.first = static_cast<std::int32_t>(entries_.size());
+      for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
+        const PointNode& from = workspace_.points.stencils[e];
+        const double share = share_of(from);
+        if (share == 0) continue;
+        std::int32_t& place = workspace_.points.place[from.node];
+        if (place == 0) {
+          const double* const v = velocity_record(from.node);
+          nodes_.push_back({{v[0], v[1], v[2]}, 1 / record(from.node).v[3]});
+          node_of_.push_back(from.node);
+          place = static_cast<std::int32_t>(nodes_.size());
+        }
+        std::int32_t sign = 0;
+        for (const double w : from.weight) sign = 3 * sign + (w > 0) - (w < 0) + 1;
+        entries_.push_back({share, place - 1, sign});
+      }
+      own.count = static_cast<std::int32_t>(entries_.size()) - own.first;
+      return own;
+    };
+    for (const ContactPoint* point : acting) {
+      Row row;
+      row.a = side_of(point->a);
+      row.b = side_of(point->b);
+      row.normal = point->normal;
+      row.target = point->constraint.target;
+      row.mobility = point->mobility;
+      row.inverse_mobility = 1 / point->mobility;
+      row.friction = point->constraint.friction ? point->friction : 0;
+      row.start_push = point->start_push;
+      row.hold = point->constraint.hold;
+      rows_.push_back(row);
+    }
+  }
+
+  using Two = scalar::Vec<2>;
+
+  Vector3 velocity(const Side& side) const {
+    if (side.rigid >= 0) return rigid_[side.rigid].velocity_at(side.at);
+    Two xy{}, z{};  // the second of z is nothing
+    for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
+      const Entry& entry = entries_[e];
+      const double *const v = nodes_[entry.node].v, *const sign = signs.of[entry.signs];
+      xy += scalar::load_aligned<Two>(sign) * entry.share * scalar::load_aligned<Two>(v);
+      z += scalar::load_aligned<Two>(sign + 2) * entry.share * scalar::load_aligned<Two>(v + 2);
+    }
+    return {xy[0], xy[1], z[0]};
+  }
+
+  void give(const Side& side, Vector3 impulse) {
     if (side.fixed) return;
     if (side.rigid >= 0) {
       RigidMotion& body = rigid_[side.rigid];
@@ -278,12 +440,20 @@ class Phase {
       push(body, impulse, moment);
       return;
     }
+    const Two push_xy = {impulse[0], impulse[1]}, push_z = {impulse[2], 0};
     for (std::int32_t e = side.first; e < side.first + side.count; ++e) {
-      const PointNode& entry = workspace_.points.stencils[e];
-      double* node = velocity_record(entry.node);
-      const double inverse = 1 / record(entry.node).v[3];
-      for (int c = 0; c < 3; ++c) node[c] += entry.weight[c] * impulse[c] * inverse;
+      const Entry& entry = entries_[e];
+      Node& node = nodes_[entry.node];
+      double* const v = node.v;
+      const double *const sign = signs.of[entry.signs], by = node.inverse_mass;
+      scalar::store_aligned(v, scalar::load_aligned<Two>(v) + scalar::load_aligned<Two>(sign) * entry.share * push_xy * by);
+      // Adds 0 to the inverse mass.
+      scalar::store_aligned(v + 2, scalar::load_aligned<Two>(v + 2) + scalar::load_aligned<Two>(sign + 2) * entry.share * push_z * by);
     }
+  }
+
+  static double share_of(const PointNode& entry) {
+    return std::max({std::abs(entry.weight[0]), std::abs(entry.weight[1]), std::abs(entry.weight[2])});
   }
 
   // mobility of a point: the velocity that a unit impulse gives there, were the mass of each node and rigid body shared
@@ -291,9 +461,6 @@ class Phase {
   void find_mobilities(const std::vector<ContactPoint*>& acting) {
     ContactPoints& points = workspace_.points;
     std::vector<double> rigid_share(rigid_.size(), 0.0);
-    const auto share_of = [](const PointNode& entry) {
-      return std::max({std::abs(entry.weight[0]), std::abs(entry.weight[1]), std::abs(entry.weight[2])});
-    };
     for (const ContactPoint* point : acting)
       for (const PointSide* side : {&point->a, &point->b}) {
         if (side->rigid >= 0) rigid_share[side->rigid] += point->part;
@@ -323,24 +490,23 @@ class Phase {
   }
 
   // The nearest impulse on a that the point's constraint allows: pushes only, within the friction cone.
-  static Vector3 allowed(const ContactPoint& point, const Vector3& impulse) {
-    const Constraint& constraint = point.constraint;
-    double push = -dot(impulse, point.normal);
-    Vector3 along = plus(impulse, times(push, point.normal));
-    if (constraint.hold == Hold::Contact) push = std::max(push, 0.0);
-    if (constraint.hold != Hold::Stick) {
-      const double most = constraint.friction ? point.friction * (std::max(push, 0.0) + point.start_push) : 0;
+  static Vector3 allowed(const Row& row, const Vector3& impulse) {
+    double push = -dot(impulse, row.normal);
+    Vector3 along = plus(impulse, times(push, row.normal));
+    if (row.hold == Hold::Contact) push = std::max(push, 0.0);
+    if (row.hold != Hold::Stick) {
+      const double most = row.friction * (std::max(push, 0.0) + row.start_push);
       const double size = length(along);
       along = size > most ? times(size > 0 ? most / size : 0, along) : along;
     }
-    return minus(along, times(push, point.normal));
+    return minus(along, times(push, row.normal));
   }
 
   bool decide(ContactPoint& point) {
     point.found = relative(point);
     for (PointSide* side : {&point.a, &point.b})
       if (side->rigid >= 0) side->before = velocity(*side);
-    point.impulse = point.ahead = {};
+    point.impulse = {};
     point.constraint = {};
     const auto by_grid = [](const PointSide& side) { return side.rigid < 0 && !side.lagrangian && side.count > 0; };
     const bool strains = by_grid(point.a) || by_grid(point.b);
@@ -386,6 +552,10 @@ class Phase {
   const bool at_end_;
   const StartUse use_;
   const double dt_;
+  std::vector<Row> rows_;  // in the order of the acting points
+  std::vector<Entry> entries_;
+  std::vector<Node> nodes_;
+  std::vector<std::int32_t> node_of_;  // in the workspace
 };
 
 double push_of(const ContactPoint& point) { return -dot(point.impulse, point.normal); }
@@ -474,7 +644,7 @@ std::array<std::int32_t, 3> memory_of(const State& state, const ContactPoint& po
 
 std::int64_t ContactPoints::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
-  std::int64_t total = bytes(points) + bytes(stencils) + bytes(found) + bytes(pieces) + bytes(changes) + bytes(seen) +
+  std::int64_t total = bytes(points) + bytes(stencils) + bytes(found) + bytes(pieces) + bytes(changes) + bytes(seen) + bytes(place) +
                        bytes(share) + bytes(start);
   for (const auto& list : found) total += bytes(list);
   return total;
@@ -494,6 +664,7 @@ void find_points(const Model& model, const State& state, Workspace& workspace) {
   points.start.clear();
   const std::size_t nodes = workspace.nodes.size() + (workspace.reference_grid ? workspace.reference_grid->nodes.size() : 0);
   points.seen.resize(nodes);
+  points.place.resize(nodes);
   points.share.resize(nodes);
   points.pieces.clear();
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {

@@ -60,7 +60,6 @@ struct ContactPoint {
   Vector3 found{};
   double mobility = 0;
   Vector3 impulse{};        // on a; on b its opposite
-  Vector3 ahead{}, change{};  // the impulse that the velocities have now, and the last change of `impulse`
 };
 
 struct ContactPoints {
@@ -80,6 +79,7 @@ struct ContactPoints {
   };
   std::vector<Change> changes;
   std::vector<std::int32_t> seen;  // as `share`, with the nodes of the reference grid behind those of the common one
+  std::vector<std::int32_t> place;  // by node: 1 + where the solver has it; zero between phases
   std::vector<double> share;  // by node: sum of the weights of acting points; zero between phases
   // Of the first phase: what goes back before the particles' increment, and what they never see. Of common nodes; reference
   // nodes have theirs in LagrangianContact.

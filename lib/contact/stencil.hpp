@@ -38,7 +38,7 @@ inline int stencil_weights(ShapeFunction shape, double xi, double (&w)[3]) {
   return nearest - 1;
 }
 
-// For one thread: it remembers the last blocks.
+// For one thread, and for one phase of a step: it remembers the last blocks and cells, these with their velocities.
 class Stenciler {
  public:
   Stenciler(const Model& model, const Workspace& workspace) : model_(model), workspace_(workspace) {}
@@ -72,15 +72,38 @@ class Stenciler {
       append(nodes, i, nodes.share[i] * (1 + dot(minus(nodes.place[i], mean), slope)), stencil);
   }
 
-  // Velocity at the end of the step (node records: {-, mass | velocity}) of a field's surface at x; false: no mass there.
+  // Velocity at the end of the step (node records: {-, mass | velocity}) of a field's surface at x; false: no mass there. The
+  // weights are those of `make`.
   bool end_velocity_on_surface(std::int32_t field, const Vector3& x, Vector3& velocity) const {
-    Nodes nodes;
-    collect(field, x, nodes);
-    lighten(nodes);
+    const int width = this->width();
+    const Vector3 xi = in_cells(x);
+    double w[3][3];
+    std::array<int, 4> cell{0, 0, 0, field};
+    for (int a = 0; a < 3; ++a) cell[a] = stencil_weights(model_.numerics.shape_function, xi[a], w[a]);
     velocity = {};
-    for (int i = 0; i < nodes.count; ++i)
-      for (int c = 0; c < 3; ++c) velocity[c] += nodes.share[i] * nodes.sign[i][c] * nodes.record[i]->f[c];
-    return nodes.count > 0;
+    bool all = true;
+    for (int a = 0; a < 3; ++a)
+      for (int i = 0; i < width; ++i) all = all && w[a][i] != 0;
+    if (!all) {  // the largest mass is not that of all nodes of the cell
+      Nodes nodes;
+      collect(field, x, nodes);
+      lighten(nodes);
+      for (int i = 0; i < nodes.count; ++i)
+        for (int c = 0; c < 3; ++c) velocity[c] += nodes.share[i] * nodes.sign[i][c] * nodes.record[i]->f[c];
+      return nodes.count > 0;
+    }
+    Around& around = around_[(cell[0] & 3) | (cell[1] & 3) << 2 | (cell[2] & 3) << 4];
+    if (!around.known || around.cell != cell) look_around(cell, around);
+    double sum[4] = {};
+    for (int k = 0, n = 0; k < width; ++k)
+      for (int j = 0; j < width; ++j) {
+        const double along = w[1][j] * w[2][k];
+        for (int i = 0; i < width; ++i, ++n)
+          for (int c = 0; c < 4; ++c) sum[c] += along * w[0][i] * around.of[n][c];
+      }
+    if (!(sum[3] > 0)) return false;
+    velocity = times(1 / sum[3], {sum[0], sum[1], sum[2]});
+    return true;
   }
 
  private:
@@ -127,51 +150,94 @@ class Stenciler {
     return xi;
   }
 
-  void collect(std::int32_t field, const Vector3& x, Nodes& nodes) const {
-    // Along each axis.
-    struct Line {
-      double weight[3], images[3];
-      int first, real[3];
-      Vector3 sign[3];
-    } lines[3];
+  int width() const { return model_.numerics.shape_function == ShapeFunction::Linear ? 2 : 3; }
+
+  // Where the nodes from `first` on along an axis are: those beyond a face at their images, with the signs of the components there.
+  struct Line {
+    double images[3];
+    int real[3];
+    Vector3 sign[3];
+  };
+  Line line_of(int a, int first) const {
     const Grid& grid = model_.grid;
-    const Vector3 xi = in_cells(x);
-    const int width = model_.numerics.shape_function == ShapeFunction::Linear ? 2 : 3;
-    for (int a = 0; a < 3; ++a) {
-      Line& line = lines[a];
-      line.first = stencil_weights(model_.numerics.shape_function, xi[a], line.weight);
-      const int last = static_cast<int>(std::lround((grid.domain_max[a] - grid.domain_min[a]) / grid.cell_size));
-      for (int i = 0; i < width; ++i) {
-        line.real[i] = line.first + i;
-        line.images[i] = 1;
-        line.sign[i] = {1, 1, 1};
-        for (int side = 0; side < 2; ++side) {
-          const Face face = grid.face[2 * a + side];
-          const int plane = side == 0 ? 0 : last;
-          const bool beyond = side == 0 ? line.real[i] < plane : line.real[i] > plane, on = line.real[i] == plane;
-          if (face == Face::Free || !(beyond || on)) continue;
-          if (on) line.images[i] = 2;
-          line.real[i] = 2 * plane - line.real[i];
-          for (int c = 0; c < 3; ++c)
-            if (c == a || face == Face::Fixed) line.sign[i][c] = on ? 0 : -1;
-        }
+    const int last = static_cast<int>(std::lround((grid.domain_max[a] - grid.domain_min[a]) / grid.cell_size));
+    Line line;
+    for (int i = 0; i < width(); ++i) {
+      line.real[i] = first + i;
+      line.images[i] = 1;
+      line.sign[i] = {1, 1, 1};
+      for (int side = 0; side < 2; ++side) {
+        const Face face = grid.face[2 * a + side];
+        const int plane = side == 0 ? 0 : last;
+        const bool beyond = side == 0 ? line.real[i] < plane : line.real[i] > plane, on = line.real[i] == plane;
+        if (face == Face::Free || !(beyond || on)) continue;
+        if (on) line.images[i] = 2;
+        line.real[i] = 2 * plane - line.real[i];
+        for (int c = 0; c < 3; ++c)
+          if (c == a || face == Face::Fixed) line.sign[i][c] = on ? 0 : -1;
       }
     }
-    const auto& [X, Y, Z] = lines;
-    for (int k = 0; k < width; ++k)
-      for (int j = 0; j < width; ++j)
-        for (int i = 0; i < width; ++i) {
-          const double share = X.weight[i] * Y.weight[j] * Z.weight[k];
-          if (share == 0) continue;
+    return line;
+  }
+
+  // visit(i, j, k, node, mass with that of its image on a face, signs of an image's components) for the nodes with mass.
+  template <class Visit>
+  void for_nodes(std::int32_t field, const std::array<int, 3>& first, Visit&& visit) const {
+    const Line X = line_of(0, first[0]), Y = line_of(1, first[1]), Z = line_of(2, first[2]);
+    for (int k = 0; k < width(); ++k)
+      for (int j = 0; j < width(); ++j)
+        for (int i = 0; i < width(); ++i) {
           const NodeRecord* record = node_of(field, {X.real[i], Y.real[j], Z.real[k]});
           if (!record || !(record->v[3] > 0)) continue;
-          const int n = nodes.count++;
-          nodes.record[n] = record;
-          nodes.place[n] = {static_cast<double>(X.first + i), static_cast<double>(Y.first + j), static_cast<double>(Z.first + k)};
-          for (int c = 0; c < 3; ++c) nodes.sign[n][c] = X.sign[i][c] * Y.sign[j][c] * Z.sign[k][c];
-          nodes.share[n] = share;
-          nodes.mass[n] = record->v[3] * X.images[i] * Y.images[j] * Z.images[k];
+          Vector3 sign;
+          for (int c = 0; c < 3; ++c) sign[c] = X.sign[i][c] * Y.sign[j][c] * Z.sign[k][c];
+          visit(i, j, k, *record, record->v[3] * X.images[i] * Y.images[j] * Z.images[k], sign);
         }
+  }
+
+  void collect(std::int32_t field, const Vector3& x, Nodes& nodes) const {
+    const Vector3 xi = in_cells(x);
+    double w[3][3];
+    std::array<int, 3> first;
+    for (int a = 0; a < 3; ++a) first[a] = stencil_weights(model_.numerics.shape_function, xi[a], w[a]);
+    for_nodes(field, first, [&](int i, int j, int k, const NodeRecord& record, double mass, const Vector3& sign) {
+      const double share = w[0][i] * w[1][j] * w[2][k];
+      if (share == 0) return;
+      const int n = nodes.count++;
+      nodes.record[n] = &record;
+      nodes.place[n] = {static_cast<double>(first[0] + i), static_cast<double>(first[1] + j), static_cast<double>(first[2] + k)};
+      nodes.sign[n] = sign;
+      nodes.share[n] = share;
+      nodes.mass[n] = mass;
+    });
+  }
+
+  // What the points of one cell have in common: {c_j v_j, c_j} of its nodes, x fastest.
+  struct Around {
+    bool known = false;
+    std::array<int, 4> cell{};
+    double of[27][4];
+  };
+
+  void look_around(const std::array<int, 4>& cell, Around& around) const {
+    around.known = true;
+    around.cell = cell;
+    const int width = this->width(), count = width * width * width;
+    for (int n = 0; n < count; ++n)
+      for (double& value : around.of[n]) value = 0;
+    double largest = 0;
+    for_nodes(cell[3], {cell[0], cell[1], cell[2]}, [&](int i, int j, int k, const NodeRecord& record, double mass, const Vector3& sign) {
+      double* const of = around.of[(k * width + j) * width + i];
+      largest = std::max(largest, mass);
+      for (int c = 0; c < 3; ++c) of[c] = sign[c] * record.f[c];
+      of[3] = mass;
+    });
+    for (int n = 0; n < count; ++n) {
+      double* const of = around.of[n];
+      if (of[3] == 0) continue;
+      of[3] /= of[3] + light * largest;
+      for (int c = 0; c < 3; ++c) of[c] *= of[3];
+    }
   }
 
   // Shares become N_j c_j / sum_k N_k c_k.
@@ -217,6 +283,7 @@ class Stenciler {
   const Model& model_;
   const Workspace& workspace_;
   mutable Known known_[8];
+  mutable std::array<Around, 64> around_;
 };
 
 }  // namespace ogive

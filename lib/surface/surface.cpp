@@ -378,7 +378,19 @@ bool Surface::nearest_triangle(const Vector3& x, double reach, SurfacePoint& fou
     return squared;
   };
   Nearest best{reach * reach, -1, 0, {}};
-  if (hint && *hint >= 0) nearest_of_triangle(*hint, x, best);
+  if (hint && *hint >= 0) {
+    // From the last query's triangle downhill over edges and corners: the tree then has little left to say.
+    nearest_of_triangle(*hint, x, best);
+    for (std::int32_t from = -1; best.triangle >= 0 && best.triangle != from && best.feature > 0;) {
+      from = best.triangle;
+      const std::int32_t *const across = &neighbour_[3 * from], feature = best.feature;
+      const auto look = [&](int edge) {
+        if (across[edge] >= 0) nearest_of_triangle(across[edge], x, best);
+      };
+      look(feature < 4 ? feature - 1 : feature - 4);
+      if (feature >= 4) look((feature - 2) % 3);
+    }
+  }
   struct Waiting {
     std::int32_t node;
     double squared;
