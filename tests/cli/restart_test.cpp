@@ -247,9 +247,14 @@ TEST_F(Restart, refuses_while_the_run_is_still_at_work) {
   expect_same_results(scratch_ / "results", reference());
 }
 
+// Since save version 6 the impulses of contact by surfaces are found to 1e-3 of the approach, before to 1e-5 of the impulses:
+// measured 1.2e-4 in these speeds. (Nor had the latter converged in the 100 passes that there are.)
+constexpr double other_impulses = 3e-4;
+
 // Restarts a kept checkpoint and compares the speeds at its end with those that the version which wrote it came to. Another
 // processor's rounding moves them by less than 1e-9.
-void expect_kept(const std::string& file, double time, const std::vector<std::pair<std::string, double>>& speeds) {
+void expect_kept(const std::string& file, double time, const std::vector<std::pair<std::string, double>>& speeds,
+                 double tolerance = 1e-9) {
   const ScratchDirectory scratch;
   const std::filesystem::path kept = std::filesystem::path(OGIVE_CLI_DATA).parent_path() / file;
   const Outcome outcome = run_program(scratch.path(), {"restart", kept.string(), "-o", "results"});
@@ -257,7 +262,7 @@ void expect_kept(const std::string& file, double time, const std::vector<std::pa
   const nlohmann::json summary = read_json(scratch / "results" / "summary.json");
   EXPECT_EQ(summary.at("time"), time);
   for (const auto& [body, speed] : speeds)
-    EXPECT_NEAR(summary.at("bodies").at(body).at("speed").get<double>() / speed, 1, 1e-9) << body;
+    EXPECT_NEAR(summary.at("bodies").at(body).at("speed").get<double>() / speed, 1, tolerance) << body;
 }
 
 TEST(KeptCheckpoint, of_0_2_0_goes_on_to_what_that_version_came_to) {
@@ -270,7 +275,8 @@ TEST(KeptCheckpoint, of_save_version_3_goes_on_to_what_that_version_came_to) {
   // At step 40: a total Lagrangian bar of mixed hardening between free rigid boxes, a heated block with bulk viscosity that one of
   // them touches by its true surface.
   expect_kept("checkpoint_save3.h5", 0.01,
-              {{"ball", 76.87968592030562}, {"bar", 73.71074858854328}, {"block", 105.91353942371867}, {"cap", 106.03193345251914}});
+              {{"ball", 76.87968592030562}, {"bar", 73.71074858854328}, {"block", 105.91353942371867}, {"cap", 106.03193345251914}},
+              other_impulses);
 }
 
 TEST(KeptCheckpoint, of_save_version_4_goes_on_to_what_that_version_came_to) {
@@ -281,7 +287,15 @@ TEST(KeptCheckpoint, of_save_version_4_goes_on_to_what_that_version_came_to) {
 
 TEST(KeptCheckpoint, of_save_version_5_goes_on_to_what_that_version_came_to) {
   // At step 100: a total Lagrangian ball that strikes a block and has a wall below, all by its own surface, before a mirror.
-  expect_kept("checkpoint_save5.h5", 0.04, {{"ball", 40.04442163601388}, {"block", 3.0071535181329505}});
+  expect_kept("checkpoint_save5.h5", 0.04, {{"ball", 40.04442163601388}, {"block", 3.0071535181329505}},
+              10 * other_impulses);  // measured 2.9e-3 of the block's, which is 1/17 of the impact's; with 1e-7 it is 3.00972
+}
+
+TEST(KeptCheckpoint, of_save_version_6_goes_on_to_what_that_version_came_to) {
+  // At step 120: a ball strikes a block, both before a mirror, and the block a clamp; another moves in the clamp and is stopped there.
+  // Limits of the energy.
+  expect_kept("checkpoint_save6.h5", 0.04,
+              {{"ball", 39.03996877866225}, {"block", 4.210562820741294}, {"rest", 7.722627737226283}});
 }
 
 }  // namespace
