@@ -15,6 +15,7 @@ import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import measure  # noqa: E402
+from validation_table import replace_block  # noqa: E402
 
 ELASTIC = "materials.aluminium={density=2.70e-3, elastic={youngs_modulus=69e3, poisson_ratio=0.3}}"
 POWER = "materials.aluminium={density=2.70e-3, j2_power={youngs_modulus=69e3, poisson_ratio=0.3, A=262.0, B=52.1, n=0.41}}"
@@ -61,12 +62,7 @@ def main():
     print(text)
     if arguments.print:
         return
-    with open(measure.PAGE, encoding="utf-8") as file:
-        whole = file.read()
-    begin, end = "<!-- bodies:begin -->\n", "<!-- bodies:end -->"
-    before, rest = whole.split(begin)
-    with open(measure.PAGE, "w", encoding="utf-8") as file:
-        file.write(before + begin + text + "\n" + end + rest.split(end)[1])
+    replace_block(measure.PAGE, "bodies", text)
 
 
 if __name__ == "__main__":

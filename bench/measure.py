@@ -26,6 +26,7 @@ import time
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 sys.path.insert(0, os.path.join(ROOT, "tools"))
+from validation_table import replace_block  # noqa: E402
 PLATE = os.path.join(ROOT, "examples", "scenes", "thick_plate", "scene.toml")
 BLOCK = os.path.join(ROOT, "bench", "block.toml")
 DATA = os.path.join(ROOT, "docs", "data", "performance.json")
@@ -291,15 +292,8 @@ def draw(data):
 
 
 def write_page(data):
-    with open(PAGE, encoding="utf-8") as file:
-        page = file.read()
     for name, text in tables(data).items():
-        begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
-        page, count = re.subn(re.escape(begin) + ".*?" + re.escape(end), lambda _: f"{begin}\n{text}\n{end}", page, flags=re.S)
-        if count != 1:
-            sys.exit(f"measure.py: docs/performance.md has no place for {name}")
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(page)
+        replace_block(PAGE, name, text)
 
 
 def main():

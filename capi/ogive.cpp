@@ -1593,8 +1593,7 @@ ogive_status ogive_world_ledger(const ogive_world* world, ogive_ledger* ledger) 
     full.prescribed_work = state.ledger.prescribed_work;
     full.initial_total = state.ledger.initial_total;
     full.total = full.kinetic + full.internal + full.failure_loss + full.left_domain_energy + full.dropped_energy +
-                 full.friction_dissipation + full.contact_dissipation +
-                 full.transfer_dissipation - full.external_work - full.prescribed_work - full.boundary_work;
+                 booked_energy(state.ledger);
     full.residual = full.total - full.initial_total;
     full.residual_relative = full.initial_total != 0 ? full.residual / full.initial_total : 0;
     const double growth = energy_growth(world->model, state, world->workspace.threads);

@@ -655,8 +655,8 @@ typedef struct ogive_ledger {
   double contact_couple[3];    /* [M L2/T] given to free rigid bodies because contact acts on them at the surface, and on a
                                   deformable body at the node: angular_momentum less this is what contact conserves */
   double energy_growth;        /* [-] largest growth of the energy that was seen, at every 25th step and now: residual, less what
-                                  the host put in by setting fields, divided by initial_total + largest work of loads and
-                                  guides so far + what the host put in. 0: it never grew */
+                                  the host put in by setting fields (and with what clamps would give), divided by initial_total +
+                                  largest work of loads and guides so far + what the host put in. 0: it never grew */
   double energy_growth_time;   /* [T] when that was */
   double energy_warning_time;  /* [T] when growth first passed energy_warning; -1: never */
   double contact_dissipation;  /* kinetic energy that contact took, beside friction, where total Lagrangian bodies meet each other,

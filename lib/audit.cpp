@@ -119,10 +119,13 @@ BodyAudit audit_body(const Model& model, const State& state, int index, int thre
   return audit;
 }
 
+double booked_energy(const Ledger& ledger) {
+  return ledger.friction_dissipation + ledger.transfer_dissipation + ledger.contact_dissipation - ledger.external_work -
+         ledger.prescribed_work - ledger.boundary_work;
+}
+
 double total_energy(const Model& model, const State& state, int threads) {
-  double total =
-      state.ledger.friction_dissipation + state.ledger.transfer_dissipation + state.ledger.contact_dissipation -
-      state.ledger.external_work - state.ledger.prescribed_work - state.ledger.boundary_work;
+  double total = booked_energy(state.ledger);
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
     const BodyAudit audit = audit_body(model, state, b, threads);
     const BodyTotals& totals = state.bodies[b].totals;

@@ -19,6 +19,9 @@ BodyAudit audit_body(const Model& model, const State& state, int body, int threa
 // Kinetic energy of a particle's affine velocity field, m h^2/8 |C|^2.
 double affine_energy(const BodyState& body, std::int64_t particle, double cell_size);
 
+// What the ledger's own terms are in the sum of the energy.
+double booked_energy(const Ledger& ledger);
+
 // kinetic + internal + failure loss + energy that left or was dropped + friction heat + transfer dissipation - external work
 // - work of prescribed motion, of all bodies.
 double total_energy(const Model& model, const State& state, int threads = 1);

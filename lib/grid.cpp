@@ -703,8 +703,8 @@ std::int64_t Workspace::memory_bytes() const {
   const auto bytes = [](const auto& v) { return static_cast<std::int64_t>(v.capacity() * sizeof(v[0])); };
   std::int64_t total = bytes(slots) + bytes(nodes) + bytes(contacts) + bytes(contact_stress) + bytes(occupied) +
                        bytes(filter) + bytes(links) + bytes(kernel_groups) + bytes(pencils) + bytes(mixed) +
-                       bytes(held_nodes) + bytes(held_response) + bytes(held_slots) + bytes(stress_sums) +
-                       bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
+                       bytes(clamped_nodes) + bytes(driven_nodes) + bytes(driven_block) +
+                       bytes(driven_response) + bytes(stress_sums) + bytes(move_sums) + bytes(slot_contact_force) + bytes(slot_given) +
                        bytes(load_sums) + schedule.memory_bytes() + slot_parts.memory_bytes();
   for (const BlockContacts& block : block_contacts) total += bytes(block.fields) + bytes(block.pairs) + bytes(block.nodes);
   for (const PlacedSurface& placed : surfaces)

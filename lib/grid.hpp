@@ -65,6 +65,7 @@ struct GroupLinks {
   bool contact = false;  // some of its slots have contact records
   std::int32_t first_load_sum = 0;  // in Workspace::load_sums
   bool guided = false;  // as Slot::guided
+  bool driven = false;   // reaches blocks with driven nodes
   bool skipped = false;  // at rest and far from what moves: the step leaves it out
 };
 
@@ -121,9 +122,8 @@ struct FaceNodes {
 struct HeldNode {
   std::int64_t node = 0;
   std::int32_t axes = 0;
-  std::int32_t load = -1;           // the prescribed velocity; -1: a clamp
-  bool felt = false;                // particles take its change of velocity
-  Vector3 taken{}, impulse{};       // in this step: what was taken of its velocity at the beginning, and what holds it
+  std::int32_t load = -1;      // the prescribed velocity; -1: at rest
+  Vector3 taken{}, impulse{};  // in this step: what was taken of its velocity at the beginning, and what holds it
 };
 
 // What a body's law makes of particles at rest (resting.hpp): they stay as they are, bit for bit, and the speed of waves.
@@ -141,7 +141,6 @@ struct Resting {
   std::int64_t skipped_particles = 0;  // of the links that are left out
 };
 
-// A node whose velocity a load prescribes.
 // Everything that a step needs besides model and state; holds no information of its own between steps.
 struct Workspace {
   const KernelTable* kernels = nullptr;
@@ -161,9 +160,12 @@ struct Workspace {
   Parts slot_parts;                       // of the slots, near the pencils of the same thread
   std::vector<MixedBlock> mixed;
   std::vector<FaceNodes> faces;
-  std::vector<HeldNode> held_nodes;
-  std::vector<Vector3> held_response;     // by node, where particles feel any: momentum of their changes of velocity
-  std::vector<char> held_slots;           // then by slot: whether it has such a node whose velocity changes
+  std::vector<HeldNode> clamped_nodes;    // particles do not see their velocity change
+  std::vector<HeldNode> driven_nodes;     // they do: deep in clamps, and at prescribed velocities
+  // Of blocks with driven nodes and their ghosts: where a slot's block is (-1: it is none), and by node the momentum of the
+  // particles' changes of velocity.
+  std::vector<std::int32_t> driven_block;
+  std::vector<Vector3> driven_response;
   std::vector<KernelMaterial> materials;  // by body
   ContactNeeds contact_needs;
   Resting resting;
@@ -174,7 +176,7 @@ struct Workspace {
   std::vector<RigidMotion> rigid;             // of this step, in the order of the rigid bodies
   double rigid_speed = 0;                     // the fastest particle of them
   AlignedVector<NodeRecord> filter;           // XPIC: one entry a node
-  Vector3 filter_momentum{};                  // what the filter gave: nothing but for mirror faces
+  Vector3 filter_momentum{};                  // what the filter gave: nothing but for mirror faces and clamps
 
   // One entry a link, filled by the kernels and summed in order.
   std::vector<StressSums> stress_sums;

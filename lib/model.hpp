@@ -103,6 +103,8 @@ struct Numerics {
   }
   // The part of a particle's new velocity that is the grid's own.
   double grid_velocity_fraction() const { return transfer == Transfer::Apic ? 1.0 : pic_fraction; }
+  // Part of a particle's velocity that is made anew from the grid in a step, by XPIC too.
+  double renewed_fraction() const { return transfer == Transfer::Xpic ? 1.0 : grid_velocity_fraction(); }
 };
 
 // A part of space.

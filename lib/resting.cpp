@@ -277,8 +277,8 @@ void choose_groups(const Model& model, const State& state, Workspace& workspace)
   // Guided bodies give their nodes motion by other ways, where contact asks for them; so do prescribed velocities.
   Nodes moving(workspace);
   std::vector<std::int32_t> last, next, rest;
-  for (const HeldNode& held : workspace.held_nodes)
-    if (held.load >= 0) moving.add(held.node);
+  for (const HeldNode& driven : workspace.driven_nodes)
+    if (driven.load >= 0) moving.add(driven.node);
   for (std::size_t l = 0; l < workspace.links.size(); ++l) {
     GroupLinks& link = workspace.links[l];
     link.skipped = rests(state, workspace, link) && !moving.meet(link);

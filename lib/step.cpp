@@ -67,7 +67,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   fold_momentum(workspace);                                      // symmetry and fixed faces
   fold_contact_sums(workspace);
   nodal_velocities(workspace);                                   // (6)
-  hold_clamps(workspace);
+  hold_clamps(state, workspace);
   kick_lagrangian(model, state, workspace, dt);                  // total Lagrangian bodies
   begin_rigid_step(model, state, workspace, dt);
   set_rigid_velocities(model, workspace, false);
@@ -77,7 +77,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   if (contact) start_contact(model, state, workspace, dt,               // (23)-(25)
                              stress_first ? StartUse::MotionAndStrain : StartUse::Motion);
   if (stress_first) {
-    hold_velocities(state, workspace);                           // prescribed velocities
+    drive_nodes(state, workspace);                               // prescribed velocities
     unfold_velocity(workspace);
     update_stress(model, state, workspace, dt);                  // (29), (30), stress, (31)
   } else {
@@ -90,7 +90,7 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
   accelerate_rigid(model, state, workspace, dt);
   set_rigid_velocities(model, workspace, true);
   set_lagrangian_trial(workspace);
-  if (stress_first) return_held_velocities(workspace);
+  if (stress_first) return_driven(workspace);
   if (contact) return_start(workspace);                          // the jump of (25) belongs to the increment (34)
   hold_faces(state, workspace);
   map_contact_stress(model, state, workspace);
@@ -116,8 +116,8 @@ void advance_one_step(const Model& model, State& state, Workspace& workspace, do
     set_rigid_velocities(model, workspace, false);
     set_lagrangian_velocities(workspace);
     if (contact) start_contact(model, state, workspace, dt, StartUse::Strain);  // (23)-(25), for the strain alone
-    hold_clamps(workspace);
-    hold_velocities(state, workspace);
+    hold_clamps(state, workspace);
+    drive_nodes(state, workspace);
     unfold_velocity(workspace);
   }
   if (!stress_first) update_stress(model, state, workspace, dt); // (29), (30), stress; moves the particles (33)
@@ -236,7 +236,7 @@ void filter_velocities(const Model& model, State& state, Workspace& workspace) {
     unfold_filter(workspace);
   }
   workspace.filter_momentum = {};
-  if (workspace.faces.empty() && workspace.held_nodes.empty()) return;
+  if (workspace.faces.empty() && workspace.clamped_nodes.empty()) return;
   for (std::size_t s = 0; s < workspace.slots.size(); ++s) {
     if (workspace.slots[s].guided()) continue;
     for (std::size_t i = s * block_nodes; i < s * block_nodes + static_cast<std::size_t>(workspace.nodes_in_use); ++i)

@@ -4,12 +4,21 @@
 #include "contact/occupied.hpp"
 
 namespace ogive {
-namespace {
 
-// Sign with which component c of a vector appears in the mirror.
-double mirror_sign(const FaceNodes& face, int c) { return face.fixed || c == face.axis ? -1.0 : 1.0; }
-
-}  // namespace
+Vector3 into_model(const Grid& grid, Vector3& x) {
+  Vector3 sign = {1, 1, 1};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const double plane = side == 0 ? grid.domain_min[axis] : grid.domain_max[axis];
+      const bool beyond = side == 0 ? x[axis] < plane : x[axis] > plane;
+      const Face face = grid.face[2 * axis + side];
+      if (!beyond || face == Face::Free) continue;
+      x[axis] = 2 * plane - x[axis];
+      for (int c = 0; c < 3; ++c)
+        if (face == Face::Fixed || c == axis) sign[c] *= -1;
+    }
+  return sign;
+}
 
 void fold_momentum(Workspace& workspace) {
   for (FaceNodes& face : workspace.faces) {
@@ -191,7 +200,7 @@ void unfold_motion(State& state, Workspace& workspace) {
 
 void book_grid_velocity(const Model& model, State& state, const Workspace& workspace) {
   const bool xpic = model.numerics.transfer == Transfer::Xpic;
-  const double part = xpic ? 1.0 : model.numerics.grid_velocity_fraction();
+  const double part = model.numerics.renewed_fraction();
   if (part == 0) return;
   Vector3& impulse = state.ledger.boundary_impulse;
   const AlignedVector<NodeRecord>& velocity = xpic ? workspace.filter : workspace.nodes;
@@ -205,15 +214,6 @@ void book_grid_velocity(const Model& model, State& state, const Workspace& works
       }
     }
   if (xpic) add(impulse, workspace.filter_momentum);
-}
-
-void fold_vectors(const Workspace& workspace, std::vector<Vector3>& sums) {
-  for (const FaceNodes& face : workspace.faces)
-    for (std::size_t i = 0; i < face.moving_pairs; ++i) {
-      Vector3 &ghost = sums[face.pairs[i].ghost], &image = sums[face.pairs[i].image];
-      for (int c = 0; c < 3; ++c) image[c] += mirror_sign(face, c) * ghost[c];
-      ghost = {};
-    }
 }
 
 }  // namespace ogive

@@ -13,6 +13,12 @@
 
 namespace ogive {
 
+// Sign with which component c of a vector appears in the mirror.
+inline double mirror_sign(const FaceNodes& face, int c) { return face.fixed || c == face.axis ? -1.0 : 1.0; }
+
+// Takes what lies beyond a mirror or fixed face to its image; the signs of a vector's components there.
+Vector3 into_model(const Grid& grid, Vector3& x);
+
 // After mapping, node records hold {momentum, mass | -} and contact records their sums: folds ghosts into images.
 void fold_momentum(Workspace& workspace);
 void fold_contact_sums(Workspace& workspace);
@@ -32,7 +38,16 @@ void unfold_motion(State& state, Workspace& workspace);
 // Where particles take the grid's own velocity, or a part of it (APIC, PIC, XPIC), they take the mirrors' share in it too: what
 // nodes in the plane lost and ghosts turned round when momentum was folded. Books it. After unfold_motion.
 void book_grid_velocity(const Model& model, State& state, const Workspace& workspace);
-// Folds a sum by nodes, of vectors that turn as velocities do.
-void fold_vectors(const Workspace& workspace, std::vector<Vector3>& sums);
+// Folds sums of vectors that turn as velocities do: sum_of(node) points to that of a node, nullptr where there is none.
+template <class Find>
+void fold_vectors(const Workspace& workspace, Find&& sum_of) {
+  for (const FaceNodes& face : workspace.faces)
+    for (std::size_t i = 0; i < face.moving_pairs; ++i) {
+      Vector3 *ghost = sum_of(face.pairs[i].ghost), *image = sum_of(face.pairs[i].image);
+      if (!ghost || !image) continue;
+      for (int c = 0; c < 3; ++c) (*image)[c] += mirror_sign(face, c) * (*ghost)[c];
+      *ghost = {};
+    }
+}
 
 }  // namespace ogive

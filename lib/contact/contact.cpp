@@ -801,8 +801,7 @@ void start_contact(const Model& model, State& state, Workspace& workspace, doubl
   });
   if (workspace.contact_needs.surface) start_points(model, state, workspace, rigid, dt, use);
   if (use == StartUse::Strain) return;
-  const double grid_part =
-      model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction();
+  const double grid_part = model.numerics.renewed_fraction();
   if (workspace.contact_needs.start_kept && !workspace.lagrangian_contact.empty()) {
     LagrangianContact& contact = workspace.lagrangian_contact;
     for (LagrangianContact::Field& field : contact.fields)

@@ -793,7 +793,7 @@ void start_points(const Model& model, State& state, Workspace& workspace, std::v
         const Vector3& kept = points.start[points.seen[entry.node] - 1].kept;
         for (int c = 0; c < 3; ++c) point.kept[c] += (side == &point.a ? 1 : -1) * entry.weight[c] * kept[c];
       }
-  const double grid_part = model.numerics.transfer == Transfer::Xpic ? 1.0 : model.numerics.grid_velocity_fraction();
+  const double grid_part = model.numerics.renewed_fraction();
   std::size_t common = 0;
   for (std::size_t i = 0; i < points.changes.size(); ++i) {
     const ContactPoints::Change& change = points.changes[i];

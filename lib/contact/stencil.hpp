@@ -38,7 +38,7 @@ inline int stencil_weights(ShapeFunction shape, double xi, double (&w)[3]) {
   return nearest - 1;
 }
 
-// For one thread, and for one phase of a step: it remembers the last blocks and cells, these with their velocities.
+// For one thread: it remembers the last blocks.
 class Stenciler {
  public:
   Stenciler(const Model& model, const Workspace& workspace) : model_(model), workspace_(workspace) {}
@@ -72,41 +72,8 @@ class Stenciler {
       append(nodes, i, nodes.share[i] * (1 + dot(minus(nodes.place[i], mean), slope)), stencil);
   }
 
-  // Velocity at the end of the step (node records: {-, mass | velocity}) of a field's surface at x; false: no mass there. The
-  // weights are those of `make`.
-  bool end_velocity_on_surface(std::int32_t field, const Vector3& x, Vector3& velocity) const {
-    const int width = this->width();
-    const Vector3 xi = in_cells(x);
-    double w[3][3];
-    std::array<int, 4> cell{0, 0, 0, field};
-    for (int a = 0; a < 3; ++a) cell[a] = stencil_weights(model_.numerics.shape_function, xi[a], w[a]);
-    velocity = {};
-    bool all = true;
-    for (int a = 0; a < 3; ++a)
-      for (int i = 0; i < width; ++i) all = all && w[a][i] != 0;
-    if (!all) {  // the largest mass is not that of all nodes of the cell
-      Nodes nodes;
-      collect(field, x, nodes);
-      lighten(nodes);
-      for (int i = 0; i < nodes.count; ++i)
-        for (int c = 0; c < 3; ++c) velocity[c] += nodes.share[i] * nodes.sign[i][c] * nodes.record[i]->f[c];
-      return nodes.count > 0;
-    }
-    Around& around = around_[(cell[0] & 3) | (cell[1] & 3) << 2 | (cell[2] & 3) << 4];
-    if (!around.known || around.cell != cell) look_around(cell, around);
-    double sum[4] = {};
-    for (int k = 0, n = 0; k < width; ++k)
-      for (int j = 0; j < width; ++j) {
-        const double along = w[1][j] * w[2][k];
-        for (int i = 0; i < width; ++i, ++n)
-          for (int c = 0; c < 4; ++c) sum[c] += along * w[0][i] * around.of[n][c];
-      }
-    if (!(sum[3] > 0)) return false;
-    velocity = times(1 / sum[3], {sum[0], sum[1], sum[2]});
-    return true;
-  }
-
  private:
+  friend class SurfaceVelocities;
   static constexpr double light = 0.1;
   static constexpr double least_spread = 0.02;  // square cells
 
@@ -212,34 +179,6 @@ class Stenciler {
     });
   }
 
-  // What the points of one cell have in common: {c_j v_j, c_j} of its nodes, x fastest.
-  struct Around {
-    bool known = false;
-    std::array<int, 4> cell{};
-    double of[27][4];
-  };
-
-  void look_around(const std::array<int, 4>& cell, Around& around) const {
-    around.known = true;
-    around.cell = cell;
-    const int width = this->width(), count = width * width * width;
-    for (int n = 0; n < count; ++n)
-      for (double& value : around.of[n]) value = 0;
-    double largest = 0;
-    for_nodes(cell[3], {cell[0], cell[1], cell[2]}, [&](int i, int j, int k, const NodeRecord& record, double mass, const Vector3& sign) {
-      double* const of = around.of[(k * width + j) * width + i];
-      largest = std::max(largest, mass);
-      for (int c = 0; c < 3; ++c) of[c] = sign[c] * record.f[c];
-      of[3] = mass;
-    });
-    for (int n = 0; n < count; ++n) {
-      double* const of = around.of[n];
-      if (of[3] == 0) continue;
-      of[3] /= of[3] + light * largest;
-      for (int c = 0; c < 3; ++c) of[c] *= of[3];
-    }
-  }
-
   // Shares become N_j c_j / sum_k N_k c_k.
   static void lighten(Nodes& nodes) {
     double largest = 0, sum = 0;
@@ -283,7 +222,81 @@ class Stenciler {
   const Model& model_;
   const Workspace& workspace_;
   mutable Known known_[8];
-  mutable std::array<Around, 64> around_;
+};
+
+// Velocities at the end of the step (node records: {-, mass | velocity}) on the surfaces of fields, with the weights of
+// Stenciler::make. For one thread and one phase of a step: many vertices share a cell, and what its nodes have in common.
+class SurfaceVelocities {
+ public:
+  SurfaceVelocities(const Model& model, const Workspace& workspace) : stenciler_(model, workspace), model_(model) {}
+
+  // At x; false: no mass there.
+  bool at(std::int32_t field, const Vector3& x, Vector3& velocity) const {
+    const int width = stenciler_.width();
+    const Vector3 xi = stenciler_.in_cells(x);
+    double w[3][3];
+    std::array<int, 4> key{0, 0, 0, field};
+    bool all = true;
+    for (int a = 0; a < 3; ++a) {
+      key[a] = stencil_weights(model_.numerics.shape_function, xi[a], w[a]);
+      for (int i = 0; i < width; ++i) all = all && w[a][i] != 0;
+    }
+    velocity = {};
+    if (!all) {  // the largest mass is not that of all nodes of the cell
+      Stenciler::Nodes nodes;
+      stenciler_.collect(field, x, nodes);
+      Stenciler::lighten(nodes);
+      for (int i = 0; i < nodes.count; ++i)
+        for (int c = 0; c < 3; ++c) velocity[c] += nodes.share[i] * nodes.sign[i][c] * nodes.record[i]->f[c];
+      return nodes.count > 0;
+    }
+    Cell& cell = cells_[(key[0] & 3) | (key[1] & 3) << 2 | (key[2] & 3) << 4];
+    if (!cell.known || cell.key != key) fill(key, cell);
+    double sum[4] = {};
+    for (int k = 0, n = 0; k < width; ++k)
+      for (int j = 0; j < width; ++j) {
+        const double along = w[1][j] * w[2][k];
+        for (int i = 0; i < width; ++i, ++n)
+          for (int c = 0; c < 4; ++c) sum[c] += along * w[0][i] * cell.of[n][c];
+      }
+    if (!(sum[3] > 0)) return false;
+    velocity = times(1 / sum[3], {sum[0], sum[1], sum[2]});
+    return true;
+  }
+
+ private:
+  // {c_j v_j, c_j} of the nodes, x fastest.
+  struct Cell {
+    bool known = false;
+    std::array<int, 4> key{};  // first node, field
+    double of[27][4];
+  };
+
+  void fill(const std::array<int, 4>& key, Cell& cell) const {
+    cell.known = true;
+    cell.key = key;
+    const int width = stenciler_.width(), count = width * width * width;
+    for (int n = 0; n < count; ++n)
+      for (double& value : cell.of[n]) value = 0;
+    double largest = 0;
+    stenciler_.for_nodes(key[3], {key[0], key[1], key[2]},
+                         [&](int i, int j, int k, const NodeRecord& record, double mass, const Vector3& sign) {
+                           double* const of = cell.of[(k * width + j) * width + i];
+                           largest = std::max(largest, mass);
+                           for (int c = 0; c < 3; ++c) of[c] = sign[c] * record.f[c];
+                           of[3] = mass;
+                         });
+    for (int n = 0; n < count; ++n) {
+      double* const of = cell.of[n];
+      if (of[3] == 0) continue;
+      of[3] /= of[3] + Stenciler::light * largest;
+      for (int c = 0; c < 3; ++c) of[c] *= of[3];
+    }
+  }
+
+  const Stenciler stenciler_;
+  const Model& model_;
+  mutable std::array<Cell, 64> cells_;
 };
 
 }  // namespace ogive

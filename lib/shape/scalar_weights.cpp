@@ -22,6 +22,7 @@ void fill(ScalarWeights& s, double inverse_cell, const Vector3& corner, const do
   }
   for (int axis = 0; axis < 3; ++axis) {
     s.first[axis] = static_cast<int>(base[axis]);
+    s.from[axis] = scalar::is_planar<Shape> && axis == 2 ? 0 : base[axis] - xi[axis];
     for (int n = 0; n < Shape::nodes; ++n) {
       s.w[axis][n] = weight[n][axis];
       s.d[axis][n] = slope[n][axis];

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "boundary/boundary.hpp"
 #include "contact/method.hpp"
 #include "contact/stencil.hpp"
 
@@ -67,20 +68,6 @@ void prepare_surfaces(const Model& model, Workspace& workspace) {
     workspace.surfaces[b].surface = Surface(model.bodies[b].surface, lower, upper);
     workspace.surfaces[b].used = true;
   }
-}
-
-// Takes what lies beyond a mirror to its image; the signs of the components there.
-static Vector3 into_model(const Model& model, Vector3& x) {
-  Vector3 sign = {1, 1, 1};
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      const double plane = side == 0 ? model.grid.domain_min[axis] : model.grid.domain_max[axis];
-      const bool beyond = side == 0 ? x[axis] < plane : x[axis] > plane;
-      if (!beyond || model.grid.face[2 * axis + side] != Face::Symmetry) continue;
-      x[axis] = 2 * plane - x[axis];
-      sign[axis] = -1;
-    }
-  return sign;
 }
 
 // Of a total Lagrangian body as it lay at rest.
@@ -144,8 +131,8 @@ static void link_vertices(const Model& model, const BodyState& body, int index, 
       Vector3 X = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]};
       placed.vertex_inward[v] = times(-depth, at_rest.normal_at_vertex(v));
       Vector3 inside = plus(X, placed.vertex_inward[v]);
-      const Vector3 sign = into_model(model, X);
-      into_model(model, inside);
+      const Vector3 sign = into_model(model.grid, X);
+      into_model(model.grid, inside);
       const std::size_t first = placed.vertex_nodes.size();
       stenciler.make_linear(index, X, inside, placed.vertex_nodes);
       for (std::size_t e = first; e < placed.vertex_nodes.size(); ++e)
@@ -204,7 +191,7 @@ void move_surfaces(const Model& model, State& state, const Workspace& workspace,
     std::vector<char> found(count);
 #pragma omp parallel num_threads(workspace.threads)
     {
-      const Stenciler stenciler(model, workspace);
+      const SurfaceVelocities velocities(model, workspace);
 #pragma omp for schedule(static)
       for (std::int64_t v = 0; v < count; ++v) {
         if (!placed.surface.has_vertex(v)) continue;
@@ -218,8 +205,8 @@ void move_surfaces(const Model& model, State& state, const Workspace& workspace,
           continue;
         }
         Vector3 x = {vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]};
-        const Vector3 sign = into_model(model, x);
-        found[v] = stenciler.end_velocity_on_surface(model.field_of(static_cast<int>(b)), x, velocity[v]);
+        const Vector3 sign = into_model(model.grid, x);
+        found[v] = velocities.at(model.field_of(static_cast<int>(b)), x, velocity[v]);
         for (int c = 0; c < 3; ++c) velocity[v][c] *= sign[c];
       }
     }
